@@ -129,7 +129,9 @@ TransportSettings transport_settings(const ServeSettings& options, SessionServer
   settings.port = options.port;
   settings.tls_certificate = options.tls_certificate;
   settings.tls_key = options.tls_key;
-  settings.allowed_origins = split_origins(options.allow_origin);
+  settings.allowed_origins = options.allow_origin;
+  settings.public_names = options.public_name;
+  settings.trusted_proxies = options.trusted_proxy;
   settings.max_connections = options.limits.max_connections;
   settings.max_connections_per_address = options.limits.max_connections_per_address;
   settings.max_message_bytes = options.limits.max_scene_message_bytes;
@@ -234,8 +236,10 @@ void add_setting(CLI::App& command, const Setting& setting, SettingTexts& texts)
     return fault.empty() ? fault : fault + ", not '" + text + "'";
   };
   const auto keep = [&setting, &texts](const std::string& text) { texts[setting.name] = text; };
-  command.add_option_function<std::string>(option_of(setting), keep, setting.help)
-      ->check(CLI::Validator(check, ""))
+  CLI::Option* const option =
+      command.add_option_function<std::string>(option_of(setting), keep, setting.help);
+  if (setting.is_list) option->join(',');
+  option->check(CLI::Validator(check, ""))
       ->type_name(setting.range.find(' ') == std::string::npos ? setting.range
                                                                : '[' + setting.range + ']')
       ->default_str(to_text(setting.value()))

@@ -47,11 +47,12 @@ void Downloads::forget_old_locked(SteadyClock::time_point now) {
 }
 
 HttpHandler with_downloads(HttpHandler site, Downloads& downloads, const Clock& clock) {
-  return [site = std::move(site), &downloads, &clock](std::string_view method,
-                                                      std::string_view target) {
-    if (method != "GET" || !target.starts_with(Downloads::kFolder)) return site(method, target);
-    std::optional<Downloads::File> file = downloads.take(target, clock.now());
-    if (!file) return site(method, target);
+  return [site = std::move(site), &downloads, &clock](const HttpRequest& request) {
+    const bool is_download =
+        request.method == "GET" && request.target.starts_with(Downloads::kFolder);
+    if (!is_download) return site(request);
+    std::optional<Downloads::File> file = downloads.take(request.target, clock.now());
+    if (!file) return site(request);
     return HttpResponse{200,
                         "application/octet-stream",
                         std::move(file->content),

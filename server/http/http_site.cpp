@@ -57,14 +57,14 @@ HttpResponse readiness(ServerPhase phase) {
   return {phase == ServerPhase::ready ? 200 : 503, kJson, body, {}};
 }
 
-HttpResponse answer(const StaticFiles& viewer, const SiteSources& sources, std::string_view method,
-                    std::string_view target) {
-  if (method != "GET" && method != "HEAD") {
+HttpResponse answer(const StaticFiles& viewer, const SiteSources& sources,
+                    const HttpRequest& request) {
+  if (request.method != "GET" && request.method != "HEAD") {
     HttpResponse response = text(405, "Only GET and HEAD are served here.\n");
     response.headers.emplace_back("Allow", "GET, HEAD");
     return response;
   }
-  const std::optional<std::string> path = request_path(target);
+  const std::optional<std::string> path = request_path(request.target);
   if (!path) return text(400, "The path is malformed.\n");
   if (*path == "/healthz") return {200, kJson, "{\"status\":\"ok\"}\n", {}};
   if (*path == "/readyz") return readiness(sources.phase());
@@ -86,8 +86,8 @@ void add_common_headers(HttpResponse& response) {
 
 HttpHandler make_http_site(StaticFiles viewer, SiteSources sources) {
   return [files = std::make_shared<const StaticFiles>(std::move(viewer)),
-          source = std::move(sources)](std::string_view method, std::string_view target) {
-    HttpResponse response = answer(*files, source, method, target);
+          source = std::move(sources)](const HttpRequest& request) {
+    HttpResponse response = answer(*files, source, request);
     add_common_headers(response);
     return response;
   };

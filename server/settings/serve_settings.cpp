@@ -1,12 +1,13 @@
 #include "server/settings/serve_settings.h"
 
 #include <boost/asio/ip/address.hpp>
-#include <sstream>
 #include <utility>
 
 #include "core/limits.h"
 #include "core/support/instruction_set.h"
 #include "server/history/recording.h"
+#include "server/transport/client_address.h"
+#include "server/transport/host_names.h"
 
 namespace vat {
 namespace {
@@ -31,15 +32,23 @@ std::string check_host(const std::string& host) {
   return error ? "must be a numeric address, such as 127.0.0.1, 0.0.0.0 or ::1" : std::string();
 }
 
-std::string check_origins(const std::string& list) {
-  for (const std::string& origin : split_origins(list)) {
-    const bool has_scheme = origin.starts_with("https://") || origin.starts_with("http://");
-    if (!has_scheme || origin.find('/', origin.find("//") + 2) != std::string::npos ||
-        origin.find_first_of(" *") != std::string::npos || origin.ends_with("//")) {
-      return "must be origins with commas between, such as https://example.org:8443";
-    }
+std::string check_origin(const std::string& origin) {
+  const bool has_scheme = origin.starts_with("https://") || origin.starts_with("http://");
+  if (!has_scheme || origin.find('/', origin.find("//") + 2) != std::string::npos ||
+      origin.find_first_of(" *") != std::string::npos || origin.ends_with("//")) {
+    return "must be origins separated by commas, such as https://example.org:8443";
   }
   return {};
+}
+
+std::string check_public_name(const std::string& name) {
+  if (is_host_name(name)) return {};
+  return "must be ASCII host names separated by commas, such as example.org or example.org:8443";
+}
+
+std::string check_proxy(const std::string& network) {
+  if (is_network(network)) return {};
+  return "must be numeric addresses or networks separated by commas, such as 10.0.0.1 or fd00::/8";
 }
 
 std::string check_instructions(const std::string& name) {
@@ -70,9 +79,15 @@ std::vector<Setting> server_group(ServeSettings& s) {
       text_setting("tls_certificate", s.tls_certificate, "FILE",
                    "Certificate chain in PEM; enables TLS on the port (https and wss)"),
       text_setting("tls_key", s.tls_key, "FILE", "Private key of the certificate, in PEM"),
-      text_setting("allow_origin", s.allow_origin, "ORIGINS",
+      list_setting("public_name", s.public_name, "NAMES",
+                   "Names that clients may use besides localhost and numeric addresses: "
+                   "vat.example,vat.example:8443",
+                   check_public_name),
+      list_setting("trusted_proxy", s.trusted_proxy, "NETWORKS",
+                   "Proxies whose headers name the client: 10.0.0.1,fd00::/8", check_proxy),
+      list_setting("allow_origin", s.allow_origin, "ORIGINS",
                    "Other origins whose pages may connect: https://a.example,https://b.example",
-                   check_origins),
+                   check_origin),
       text_setting("scene", s.scene, "SCENE",
                    "Scene of the first session: a file (a path with '/' or ending in '.json') or "
                    "the name of a catalogue scene"),
@@ -114,7 +129,8 @@ std::vector<Setting> connection_limits(ServerLimits& limits) {
       number_setting<std::size_t>(
           "max_connections_per_address", limits.max_connections_per_address, 1,
           kMaxConnectionSetting,
-          "Open WebSockets from one address; behind a proxy, all clients share its address"),
+          "Open WebSockets from one address; clients of a proxy share its address, unless "
+          "trusted_proxy lists the proxy"),
       number_setting<std::size_t>("max_clients", limits.max_clients_per_session, 1,
                                   kMaxConnectionSetting, "Clients of one session"),
       number_setting<std::size_t>("max_grabs", limits.max_grabs_per_client, 1, kMaxGrabs,
@@ -267,13 +283,6 @@ std::vector<Setting> storage_group(ServeSettings& s) {
 }
 
 }  // namespace
-
-std::vector<std::string> split_origins(const std::string& list) {
-  std::vector<std::string> origins;
-  std::istringstream stream(list);
-  for (std::string origin; std::getline(stream, origin, ',');) origins.push_back(origin);
-  return origins;
-}
 
 std::vector<Setting> serve_settings(ServeSettings& target) {
   std::vector<Setting> all;

@@ -18,7 +18,9 @@ struct ServeSettings {
   std::uint16_t port = 8080;       ///< 0: any free port
   std::string tls_certificate;     ///< PEM file; empty: no TLS
   std::string tls_key;
-  std::string allow_origin;  ///< list of origins, separated by commas
+  std::vector<std::string> allow_origin;
+  std::vector<std::string> public_name;
+  std::vector<std::string> trusted_proxy;
   std::string scene = "sliding-vat-liquid";
   std::string scenes_folder;
   std::string web_folder;
@@ -34,9 +36,6 @@ struct ServeSettings {
   std::string data = "none";  ///< folder for stored sessions, or "none"
   StorageLimits storage;
 };
-
-/// Returns the elements of a list that is separated by commas.
-std::vector<std::string> split_origins(const std::string& list);
 
 /// Returns the table of all settings. Options, environment variables, members of a configuration
 /// file and SETTINGS.md are generated from the table. `target` must outlive the table.

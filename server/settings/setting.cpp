@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -28,6 +29,19 @@ std::string number_text(double number) {
   std::string text;
   append_number(text, number);
   return text;
+}
+
+std::vector<std::string> split_list(const std::string& list) {
+  std::vector<std::string> texts;
+  std::istringstream stream(list);
+  for (std::string text; std::getline(stream, text, ',');) texts.push_back(text);
+  return texts;
+}
+
+std::string join_list(const std::vector<std::string>& texts) {
+  std::string list;
+  for (const std::string& text : texts) list += (list.empty() ? "" : ",") + text;
+  return list;
 }
 
 Setting begin_setting(std::string name, std::string range, std::string help) {
@@ -84,6 +98,25 @@ Setting text_setting(std::string name, std::string& target, std::string what, st
   };
   setting.assign = [&target](const Json& value) { target = value.get<std::string>(); };
   setting.value = [&target] { return target; };
+  return setting;
+}
+
+Setting list_setting(std::string name, std::vector<std::string>& target, std::string what,
+                     std::string help, TextCheck check) {
+  Setting setting = begin_setting(std::move(name), std::move(what), std::move(help));
+  setting.is_list = true;
+  setting.find_fault = [check = std::move(check)](const Json& value) {
+    Errors errors;
+    const auto list = to_text(value, "", kMaxTextBytes, errors);
+    if (!list) return fault_of(errors);
+    std::string fault;
+    for (const std::string& text : split_list(*list)) {
+      if (fault.empty()) fault = check(text);
+    }
+    return fault;
+  };
+  setting.assign = [&target](const Json& value) { target = split_list(value.get<std::string>()); };
+  setting.value = [&target] { return join_list(target); };
   return setting;
 }
 

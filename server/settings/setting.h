@@ -18,6 +18,7 @@ struct Setting {
   std::string help;
   std::string range;  ///< allowed values, such as "1 to 64" or "ADDRESS"
   bool is_number = false;
+  bool is_list = false;  ///< list of texts separated by commas; the option can be repeated
   /// Default value in the help text, if the value itself is not shown; otherwise empty.
   std::string shown_default;
   /// Returns a description of the allowed values if the value is invalid. Otherwise returns an
@@ -44,6 +45,9 @@ using TextCheck = std::function<std::string(const std::string&)>;
 /// as "ADDRESS".
 Setting text_setting(std::string name, std::string& target, std::string what, std::string help,
                      TextCheck check = {});
+/// Returns a setting for a list of texts separated by commas. Each text must pass the check.
+Setting list_setting(std::string name, std::vector<std::string>& target, std::string what,
+                     std::string help, TextCheck check);
 /// Returns a setting for one of several words.
 Setting word_setting(std::string name, std::string& target, std::vector<std::string> words,
                      std::string help);

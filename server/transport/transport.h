@@ -47,8 +47,17 @@ class ConnectionHandler {
   virtual void closed(ConnectionId id) = 0;
 };
 
+/// HTTP request. Absent headers are empty.
+struct HttpRequest {
+  std::string_view method;
+  std::string_view target;
+  std::string_view accept_encoding = {};
+  std::string_view if_none_match = {};
+  std::string_view authorization = {};
+};
+
 /// Complete HTTP response. The transport adds Content-Length and Connection, and omits the body for
-/// HEAD.
+/// HEAD. A response 204 or 304 must have no body.
 struct HttpResponse {
   int status = 200;
   std::string content_type;  ///< header Content-Type
@@ -58,7 +67,7 @@ struct HttpResponse {
 
 /// Function that returns the response to an HTTP request. Several transport threads may call the
 /// function simultaneously.
-using HttpHandler = std::function<HttpResponse(std::string_view method, std::string_view target)>;
+using HttpHandler = std::function<HttpResponse(const HttpRequest& request)>;
 
 struct TransportSettings {
   std::string host = "127.0.0.1";  ///< numeric address
@@ -68,6 +77,11 @@ struct TransportSettings {
   std::string tls_key;
   /// Origins whose pages may connect, in addition to this server. Example: "https://example.org".
   std::vector<std::string> allowed_origins;
+  /// Names in the Host header, in addition to localhost and numeric addresses. Without a port, a
+  /// name is valid with all ports. Examples: "example.org", "example.org:8443".
+  std::vector<std::string> public_names;
+  /// Addresses or networks of proxies that name their client in a header, see TrustedProxies.
+  std::vector<std::string> trusted_proxies;
   std::size_t endpoints = 1;                      ///< number of threads that share the port
   std::size_t max_connections = 1024;             ///< WebSockets; further ones are closed with 1013
   std::size_t max_connections_per_address = 256;  ///< WebSockets of one address
@@ -102,6 +116,10 @@ class Transport {
   /// Stops listening and closes all connections with 1001. Waits at most one second for the closing
   /// handshakes, and joins the threads.
   virtual void stop() = 0;
+  /// Reads the TLS files again. Connections that are open continue with the previous certificate.
+  /// Throws std::runtime_error that names the invalid file. The previous certificate then remains
+  /// in use. Has no effect without TLS.
+  virtual void read_certificate() = 0;
 };
 
 /// Returns a transport. The handlers must outlive the transport.

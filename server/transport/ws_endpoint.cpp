@@ -11,7 +11,6 @@
 
 #include "server/transport/ws_connection.h"
 #include "server/transport/ws_listen.h"
-#include "server/transport/ws_upgrade.h"
 
 namespace vat {
 
@@ -21,11 +20,7 @@ using boost::asio::ip::tcp;
 namespace opcode = websocketpp::frame::opcode;
 
 constexpr std::chrono::seconds kStopTimeout{1};
-constexpr std::chrono::seconds kResponseTimeout{60};  ///< until a peer has received a whole file
-constexpr long kClosingHandshakeTimeout = 5000;       // [ms]
-/// Sockets besides the WebSockets: HTTP requests, pending upgrades, refused and ending connections.
-constexpr std::size_t kMaxOtherSockets = 256;
-constexpr std::size_t kMaxOtherSocketsPerAddress = 64;
+constexpr long kClosingHandshakeTimeout = 5000;  // [ms]
 
 constexpr std::uint16_t kGoingAway = 1001;
 constexpr std::uint16_t kNotUtf8 = 1007;
@@ -48,19 +43,11 @@ bool ends_within_character(const std::string& text) {
   return false;
 }
 
-/// Returns Connection::address(), or an empty text if the peer has disconnected.
-std::string address_of(const tcp::socket& socket) {
+/// Returns the address of the peer. Returns the unspecified address if the peer has disconnected.
+boost::asio::ip::address address_of(const tcp::socket& socket) {
   boost::system::error_code error;
-  const auto address = socket.remote_endpoint(error).address();
-  if (error) return {};
-  if (address.is_v4()) return address.to_string();
-  auto bytes = address.to_v6().to_bytes();
-  if (address.to_v6().is_v4_mapped()) {
-    return boost::asio::ip::make_address_v4(boost::asio::ip::v4_mapped, address.to_v6())
-        .to_string();
-  }
-  std::fill(bytes.begin() + bytes.size() / 2, bytes.end(), std::uint8_t{0});
-  return boost::asio::ip::make_address_v6(bytes).to_string() + "/64";
+  const tcp::endpoint peer = socket.remote_endpoint(error);
+  return error ? boost::asio::ip::address() : without_mapping(peer.address());
 }
 
 }  // namespace
@@ -87,7 +74,7 @@ void WsEndpoint::configure() {
   server_.set_max_http_body_size(shared_.settings.max_http_request_bytes);
   server_.set_open_handshake_timeout(static_cast<long>(shared_.settings.handshake_timeout.count()));
   server_.set_close_handshake_timeout(kClosingHandshakeTimeout);
-  server_.set_tls_context(shared_.tls);
+  server_.set_tls(shared_.tls);
 }
 
 void WsEndpoint::set_handlers() {
@@ -183,20 +170,21 @@ void WsEndpoint::close_all() {
 }
 
 /// Limits the sockets before their first data. The library would accept connections until no file
-/// descriptors are left.
+/// descriptors are left. The sockets of a proxy belong to several clients, which are counted when
+/// their requests arrive.
 void WsEndpoint::accepted(WsStream& stream) {
+  if (stream.socket_slot) return;  // the connection continues after a request
   const std::size_t count = ++*shared_.socket_count;
   stream.socket_slot = std::shared_ptr<void>(
-      nullptr, [counter = shared_.socket_count](std::nullptr_t) { --*counter; });
+      shared_.socket_count.get(), [counter = shared_.socket_count](void*) { --*counter; });
   boost::system::error_code ignored;  // the first read detects a closed socket
-  stream.address = address_of(stream.get_raw_socket());
+  stream.socket_address = address_of(stream.get_raw_socket());
+  stream.address = address_for_limits(stream.socket_address);
   const char* passed = nullptr;
   if (count > shared_.settings.max_connections + kMaxOtherSockets) {
     passed = "connections";
-  } else {
-    stream.address_slot = shared_.sockets_by_address.take(
-        stream.address, shared_.settings.max_connections_per_address + kMaxOtherSocketsPerAddress);
-    if (!stream.address_slot) passed = "connections_per_address";
+  } else if (!shared_.proxies.trust(stream.socket_address) && !count_socket(stream)) {
+    passed = "connections_per_address";
   }
   if (passed != nullptr) {
     stream.get_raw_socket().close(ignored);
@@ -208,21 +196,10 @@ void WsEndpoint::accepted(WsStream& stream) {
       boost::asio::socket_base::send_buffer_size(shared_.settings.send_buffer_bytes), ignored);
 }
 
-bool WsEndpoint::validate(WsStream& stream) {
-  const auto refusal = refuse_upgrade(
-      {stream.get_request().get_uri(), stream.get_request_header("Host"),
-       stream.get_request_header("Origin"), stream.get_request_header("Sec-WebSocket-Version"),
-       stream.get_requested_subprotocols()},
-      shared_.settings.allowed_origins);
-  if (!refusal) {
-    stream.select_subprotocol(kSubprotocol);
-    return true;
-  }
-  stream.set_status(static_cast<websocketpp::http::status_code::value>(refusal->status));
-  stream.append_header("Content-Type", "text/plain; charset=utf-8");
-  stream.append_header("Connection", "close");
-  stream.set_body(refusal->message);
-  return false;
+bool WsEndpoint::count_socket(WsStream& stream) {
+  stream.address_slot = shared_.sockets_by_address.take(
+      stream.address, shared_.settings.max_connections_per_address + kMaxOtherSocketsPerAddress);
+  return stream.address_slot != nullptr;
 }
 
 void WsEndpoint::opened(const StreamPtr& stream) {
@@ -287,37 +264,6 @@ void WsEndpoint::count_refusal(std::string_view limit) const {
   if (shared_.settings.count_refusal) shared_.settings.count_refusal(limit);
 }
 
-void WsEndpoint::answer_http(const StreamPtr& stream) {
-  // A deferred response is exempt from the handshake's time limit, which is too short for a large
-  // file on a slow connection.
-  stream->defer_http_response();
-  stream->response_deadline.emplace(io_, kResponseTimeout);
-  stream->response_deadline->async_wait(
-      [handle = std::weak_ptr<WsStream>(stream)](boost::system::error_code error) {
-        if (error) return;
-        if (const auto slow = handle.lock()) {
-          slow->terminate(make_error_code(websocketpp::transport::error::timeout));
-        }
-      });
-  const HttpResponse response = ask_http_handler(*stream);
-  stream->set_status(static_cast<websocketpp::http::status_code::value>(response.status));
-  if (stream->get_request().get_method() != "HEAD") stream->set_body(response.body);
-  for (const auto& [name, value] : response.headers) stream->replace_header(name, value);
-  stream->replace_header("Content-Type", response.content_type);
-  stream->replace_header("Content-Length", std::to_string(response.body.size()));
-  stream->replace_header("Connection", "close");
-  stream->send_http_response();
-}
-
-HttpResponse WsEndpoint::ask_http_handler(const WsStream& stream) {
-  HttpResponse response;
-  const auto& request = stream.get_request();
-  const bool answered =
-      guarded("http", [&] { response = shared_.http(request.get_method(), request.get_uri()); });
-  if (answered) return response;
-  return {500, "text/plain; charset=utf-8", "Internal error.\n", {}};
-}
-
 void WsEndpoint::start_pings() {
   ping_timer_.expires_after(shared_.settings.ping_interval);
   ping_timer_.async_wait([this](boost::system::error_code error) {
@@ -350,19 +296,6 @@ std::vector<WsEndpoint::StreamPtr> WsEndpoint::open_streams() const {
 
 WsEndpoint::StreamPtr WsEndpoint::stream_of(const Handle& handle) {
   return server_.get_con_from_hdl(handle);
-}
-
-template <class Work>
-bool WsEndpoint::guarded(const char* place, Work&& work) noexcept {
-  try {
-    work();
-    return true;
-  } catch (const std::exception& fault) {
-    report(place, fault.what());
-  } catch (...) {
-    report(place, "unknown exception");
-  }
-  return false;
 }
 
 void WsEndpoint::report(const char* place, const char* fault) noexcept {

@@ -2,11 +2,12 @@
 
 #include <atomic>
 #include <boost/asio/io_context.hpp>
-#include <boost/asio/ssl/context.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -15,19 +16,26 @@
 #include <vector>
 
 #include "server/transport/address_counts.h"
+#include "server/transport/client_address.h"
+#include "server/transport/tls_files.h"
 #include "server/transport/transport.h"
 #include "server/transport/ws_server.h"
 #include "server/transport/ws_task_queue.h"
+#include "server/transport/ws_upgrade.h"
 
 namespace vat {
 
 /// State that the endpoints of a transport share. Limits apply to all endpoints together.
 struct WsShared {
   WsShared(TransportSettings settings_in, ConnectionHandler& connections_in, HttpHandler http_in)
-      : settings(std::move(settings_in)), connections(connections_in), http(std::move(http_in)) {}
+      : settings(std::move(settings_in)),
+        proxies(settings.trusted_proxies),
+        connections(connections_in),
+        http(std::move(http_in)) {}
 
   const TransportSettings settings;
-  std::shared_ptr<boost::asio::ssl::context> tls;  ///< null: no TLS
+  const TrustedProxies proxies;
+  std::shared_ptr<TlsFiles> tls;  ///< null: no TLS
   ConnectionHandler& connections;
   const HttpHandler http;
   std::atomic<ConnectionId> last_id = 0;
@@ -65,19 +73,31 @@ class WsEndpoint {
   using Handle = websocketpp::connection_hdl;
   using StreamPtr = std::shared_ptr<WsStream>;
 
+  /// Sockets besides the WebSockets: HTTP requests, pending upgrades, refused and ending
+  /// connections.
+  static constexpr std::size_t kMaxOtherSockets = 256;
+  static constexpr std::size_t kMaxOtherSocketsPerAddress = 64;
+
   void configure();
   void set_handlers();
   void run();
   void forget_all();
 
   void accepted(WsStream& stream);
+  bool count_socket(WsStream& stream);
   void count_refusal(std::string_view limit) const;
-  bool validate(WsStream& stream);
   void opened(const StreamPtr& stream);
   void received(WsStream& stream, const WsMessage& message);
   void answer_ping(WsStream& stream, const std::string& payload);
   void closed(WsStream& stream);
+
+  // In ws_endpoint_http.cpp.
+  std::optional<HttpRefusal> refuse_request(WsStream& stream);
+  bool validate(WsStream& stream);
   void answer_http(const StreamPtr& stream);
+  void add_strict_transport(WsStream& stream) const;
+  bool may_keep(const WsStream& stream) const;
+  void continue_with_next(WsStream& answered);
   HttpResponse ask_http_handler(const WsStream& stream);
 
   void start_pings();
@@ -103,5 +123,18 @@ class WsEndpoint {
   std::unordered_map<ConnectionId, std::weak_ptr<WsStream>> open_;
   bool stopping_ = false;
 };
+
+template <class Work>
+bool WsEndpoint::guarded(const char* place, Work&& work) noexcept {
+  try {
+    work();
+    return true;
+  } catch (const std::exception& fault) {
+    report(place, fault.what());
+  } catch (...) {
+    report(place, "unknown exception");
+  }
+  return false;
+}
 
 }  // namespace vat

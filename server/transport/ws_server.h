@@ -1,6 +1,8 @@
 #pragma once
 
+#include <boost/asio/ip/address.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <string>
@@ -21,13 +23,24 @@ class WsConnection;
 struct WsPeer {
   ConnectionId id = 0;  ///< 0: no open WebSocket
   std::shared_ptr<WsConnection> peer;
-  std::shared_ptr<void> socket_slot;   ///< counts the open sockets
-  std::string address;                 ///< see Connection::address()
-  std::shared_ptr<void> address_slot;  ///< counts the sockets of the address
-  std::shared_ptr<void> peer_slot;     ///< counts the WebSockets of the address
+  std::shared_ptr<void> socket_slot;        ///< counts the open sockets
+  boost::asio::ip::address socket_address;  ///< unspecified if the peer has disconnected
+  std::string address;                      ///< see Connection::address()
+  std::shared_ptr<void> address_slot;       ///< counts the sockets of the address
+  std::shared_ptr<void> peer_slot;          ///< counts the WebSockets of the address
   std::weak_ptr<void> unsent_pong;
   std::optional<boost::asio::steady_timer> response_deadline;
   int unanswered_pings = 0;
+};
+
+/// HTTP request that counts the bytes received after its end.
+struct WsRequest : websocketpp::http::parser::request {
+  std::size_t consume(const char* bytes, std::size_t size) {
+    const std::size_t used = websocketpp::http::parser::request::consume(bytes, size);
+    rest = size - used;
+    return used;
+  }
+  std::size_t rest = 0;
 };
 
 /// Configuration of websocketpp for one thread: no locks, log or compression.
@@ -42,6 +55,7 @@ struct WsConfig : websocketpp::config::asio {
   using elog_type = websocketpp::log::stub;
   using alog_type = websocketpp::log::stub;
   using connection_base = WsPeer;
+  using request_type = WsRequest;
   static constexpr bool enable_multithreading = false;
 
   struct transport_config : base::transport_config {

@@ -3,6 +3,7 @@
 #include <array>
 #include <boost/asio.hpp>
 #include <boost/asio/ssl/stream.hpp>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <sstream>
@@ -14,6 +15,8 @@
 #include <websocketpp/transport/base/connection.hpp>
 #include <websocketpp/uri.hpp>
 
+#include "server/transport/tls_files.h"
+
 namespace vat {
 
 /// Socket with or without TLS, selected at run time. websocketpp is therefore compiled once for
@@ -24,9 +27,12 @@ class WsByteStream {
   using executor_type = Socket::executor_type;
   using Tls = boost::asio::ssl::stream<Socket&>;
 
-  /// Without a context, bytes are not encrypted.
-  WsByteStream(boost::asio::io_context& io, boost::asio::ssl::context* context) : socket_(io) {
-    if (context != nullptr) tls_.emplace(socket_, *context);
+  explicit WsByteStream(boost::asio::io_context& io) : socket_(io) {}
+
+  /// Encrypts all later bytes.
+  void start_tls(std::shared_ptr<TlsFiles::Context> context) {
+    context_ = std::move(context);
+    tls_.emplace(socket_, *context_);
   }
 
   executor_type get_executor() { return socket_.get_executor(); }
@@ -52,6 +58,7 @@ class WsByteStream {
 
  private:
   Socket socket_;
+  std::shared_ptr<TlsFiles::Context> context_;
   std::optional<Tls> tls_;
 };
 
@@ -65,10 +72,13 @@ class WsSocket : public std::enable_shared_from_this<WsSocket> {
   using ptr = std::shared_ptr<WsSocket>;
 
   ptr get_shared() { return shared_from_this(); }
-  bool is_secure() const { return context_ != nullptr; }
-  void set_tls_context(std::shared_ptr<boost::asio::ssl::context> context) {
-    context_ = std::move(context);
-  }
+  bool is_secure() const { return tls_files_ != nullptr; }
+  void set_tls(std::shared_ptr<const TlsFiles> files) { tls_files_ = std::move(files); }
+  /// Sets a function that async_shutdown() calls first. The function may move the byte stream to
+  /// another socket with take_stream(). The connection then remains open.
+  void set_keep_handler(std::function<void()> keep) { keep_ = std::move(keep); }
+  /// Takes the open byte stream of another socket, which must not be used afterwards.
+  void take_stream(WsSocket& other) { stream_ = std::move(other.stream_); }
 
   WsByteStream& get_socket() { return *stream_; }
   WsByteStream::Socket& get_next_layer() { return stream_->socket(); }
@@ -101,16 +111,16 @@ class WsSocket : public std::enable_shared_from_this<WsSocket> {
   websocketpp::lib::error_code init_asio(boost::asio::io_service* io,
                                          const std::shared_ptr<boost::asio::io_service::strand>&,
                                          bool) {
-    stream_ = std::make_unique<WsByteStream>(*io, context_.get());
+    stream_ = std::make_unique<WsByteStream>(*io);
     return {};
   }
   void set_uri(const websocketpp::uri_ptr&) {}
   void set_handle(const websocketpp::connection_hdl&) {}
   void pre_init(const Ready& ready) { ready({}); }
   void post_init(Ready ready) {
-    WsByteStream::Tls* const tls = stream_->tls();
-    if (tls == nullptr) return ready({});
-    tls->async_handshake(
+    if (!tls_files_ || stream_->tls() != nullptr) return ready({});
+    stream_->start_tls(tls_files_->context());
+    stream_->tls()->async_handshake(
         boost::asio::ssl::stream_base::server,
         [self = get_shared(), ready = std::move(ready)](boost::system::error_code error) {
           ready(error ? translate_ec(error) : websocketpp::lib::error_code());
@@ -124,6 +134,8 @@ class WsSocket : public std::enable_shared_from_this<WsSocket> {
   websocketpp::lib::error_code get_ec() const { return {}; }
 
   void async_shutdown(Done done) {
+    if (keep_) std::exchange(keep_, nullptr)();
+    if (!stream_) return done({});
     WsByteStream::Tls* const tls = stream_->tls();
     if (tls == nullptr) return end_sending(std::move(done));
     // Fails if the peer still sends data or has disconnected. The next step does not depend on the
@@ -160,8 +172,9 @@ class WsSocket : public std::enable_shared_from_this<WsSocket> {
     done(error);
   }
 
-  std::shared_ptr<boost::asio::ssl::context> context_;  // null: no TLS
+  std::shared_ptr<const TlsFiles> tls_files_;  // null: no TLS
   std::unique_ptr<WsByteStream> stream_;
+  std::function<void()> keep_;
   std::array<char, 4096> discarded_;
 };
 
@@ -171,20 +184,18 @@ class WsSocketEndpoint {
   using socket_con_type = WsSocket;
   using socket_con_ptr = std::shared_ptr<WsSocket>;
 
-  bool is_secure() const { return context_ != nullptr; }
-  /// Sets the TLS context of all later connections.
-  void set_tls_context(std::shared_ptr<boost::asio::ssl::context> context) {
-    context_ = std::move(context);
-  }
+  bool is_secure() const { return tls_files_ != nullptr; }
+  /// Sets the TLS files of all later connections. Each connection uses the newest context.
+  void set_tls(std::shared_ptr<const TlsFiles> files) { tls_files_ = std::move(files); }
 
  protected:
   websocketpp::lib::error_code init(const socket_con_ptr& connection) {
-    connection->set_tls_context(context_);
+    connection->set_tls(tls_files_);
     return {};
   }
 
  private:
-  std::shared_ptr<boost::asio::ssl::context> context_;
+  std::shared_ptr<const TlsFiles> tls_files_;
 };
 
 }  // namespace vat

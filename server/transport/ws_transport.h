@@ -18,6 +18,7 @@ class WsTransport final : public Transport {
 
   std::uint16_t start() override;
   void stop() override;
+  void read_certificate() override;
 
  private:
   std::uint16_t listen();

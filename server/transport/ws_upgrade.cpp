@@ -3,18 +3,11 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "server/support/header_text.h"
+
 namespace vat {
 
 namespace {
-
-char lower(char c) {
-  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
-
-bool equal_ignoring_case(std::string_view a, std::string_view b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
-                    [](char x, char y) { return lower(x) == lower(y); });
-}
 
 /// Compares as text, because both omit the scheme's default port.
 bool same_origin(std::string_view origin, std::string_view host) {
@@ -27,24 +20,24 @@ bool same_origin(std::string_view origin, std::string_view host) {
 
 }  // namespace
 
-std::optional<UpgradeRefusal> refuse_upgrade(const UpgradeRequest& request,
-                                             const std::vector<std::string>& allowed_origins) {
+std::optional<HttpRefusal> refuse_upgrade(const UpgradeRequest& request,
+                                          const std::vector<std::string>& allowed_origins) {
   if (request.target.substr(0, request.target.find('?')) != "/ws") {
-    return UpgradeRefusal{400, "WebSocket connections are served at /ws only.\n"};
+    return HttpRefusal{400, "WebSocket connections are served at /ws only.\n"};
   }
   if (request.version != "13") {
-    return UpgradeRefusal{400, "Sec-WebSocket-Version must be 13.\n"};
+    return HttpRefusal{400, "Sec-WebSocket-Version must be 13.\n"};
   }
   const auto is_named = [&](const std::string& allowed) {
     return equal_ignoring_case(allowed, request.origin);
   };
   if (!request.origin.empty() && !same_origin(request.origin, request.host) &&
       std::none_of(allowed_origins.begin(), allowed_origins.end(), is_named)) {
-    return UpgradeRefusal{403, "The page comes from another origin than this server.\n"};
+    return HttpRefusal{403, "The page comes from another origin than this server.\n"};
   }
   const auto& offered = request.subprotocols;
   if (std::find(offered.begin(), offered.end(), kSubprotocol) == offered.end()) {
-    return UpgradeRefusal{400, "Sec-WebSocket-Protocol must offer vat.v1.\n"};
+    return HttpRefusal{400, "Sec-WebSocket-Protocol must offer vat.v1.\n"};
   }
   return std::nullopt;
 }

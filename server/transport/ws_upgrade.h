@@ -18,14 +18,14 @@ struct UpgradeRequest {
   const std::vector<std::string>& subprotocols;
 };
 
-struct UpgradeRefusal {
+struct HttpRefusal {
   int status;
   const char* message;
 };
 
 /// Returns the reason for a refusal, or nothing. Only pages of this server and of allowed origins
 /// may connect. Otherwise, pages of other sites could control a user's server.
-std::optional<UpgradeRefusal> refuse_upgrade(const UpgradeRequest& request,
-                                             const std::vector<std::string>& allowed_origins);
+std::optional<HttpRefusal> refuse_upgrade(const UpgradeRequest& request,
+                                          const std::vector<std::string>& allowed_origins);
 
 }  // namespace vat

@@ -41,6 +41,18 @@ TEST(ServeSettings, ComeFromFileEnvironmentAndOptions) {
   EXPECT_EQ(settings.at("max_sessions"), 3);
 }
 
+TEST(ServeSettings, TheOptionOfAListCanBeRepeated) {
+  const ProgramResult result = run_vat(
+      {"serve", "--public-name", "a.example", "--public-name", "b.example:8443", "--print-config"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const nlohmann::json settings = nlohmann::json::parse(result.out).at("settings");
+  EXPECT_EQ(settings.at("public_name"), "a.example,b.example:8443");
+  const ProgramResult refused = run_vat({"serve", "--public-name", "a.example", "--public-name",
+                                         "https://b.example", "--print-config"});
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("must be ASCII host names"));
+}
+
 TEST(ServeSettings, AFileWithFaultsIsRefused) {
   const TemporaryFolder folder;
   folder.write("vat.json", R"({"prot": 1})");

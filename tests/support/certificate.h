@@ -23,9 +23,10 @@ inline void expect_written(bool is_written) {
 }
 
 /// Writes a key and a self-signed certificate that is valid for an hour. `names` are the
-/// alternative names in OpenSSL's format.
+/// alternative names in OpenSSL's format. `common_name` is the name of the subject.
 inline void write_certificate(const std::string& certificate_file, const std::string& key_file,
-                              const std::string& names = "DNS:localhost,IP:127.0.0.1") {
+                              const std::string& names = "DNS:localhost,IP:127.0.0.1",
+                              const std::string& common_name = "a test") {
   const Owned<EVP_PKEY> key(EVP_EC_gen("P-256"), free_key);
   const Owned<X509> certificate(X509_new(), X509_free);
   X509_set_version(certificate.get(), X509_VERSION_3);
@@ -35,7 +36,8 @@ inline void write_certificate(const std::string& certificate_file, const std::st
   X509_set_pubkey(certificate.get(), key.get());
   X509_NAME* name = X509_get_subject_name(certificate.get());
   X509_NAME_add_entry_by_txt(name, "CN", MBSTRING_ASC,
-                             reinterpret_cast<const unsigned char*>("a test"), -1, -1, 0);
+                             reinterpret_cast<const unsigned char*>(common_name.c_str()), -1, -1,
+                             0);
   X509_set_issuer_name(certificate.get(), name);
   const Owned<X509_EXTENSION> alternatives(
       X509V3_EXT_conf_nid(nullptr, nullptr, NID_subject_alt_name, names.c_str()),

@@ -62,7 +62,8 @@ std::string get(std::uint16_t port, const std::string& target) {
   address.sin_family = AF_INET;
   address.sin_port = htons(port);
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  const std::string request = "GET " + target + " HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n";
+  const std::string request =
+      "GET " + target + " HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n";
   std::string reply;
   if (connect(file, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
       send(file, request.data(), request.size(), MSG_NOSIGNAL) > 0) {

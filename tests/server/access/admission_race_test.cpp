@@ -173,10 +173,9 @@ class TransportRace : public testing::Test {
   std::size_t admitted() {
     Recorder echo;
     echo.echo = true;
-    const auto transport =
-        make_websocket_transport(settings, echo, [](std::string_view, std::string_view) {
-          return HttpResponse{200, "text/plain", "", {}};
-        });
+    const auto transport = make_websocket_transport(settings, echo, [](const HttpRequest&) {
+      return HttpResponse{200, "text/plain", "", {}};
+    });
     const std::uint16_t port = transport->start();
     std::vector<std::unique_ptr<WsClient>> clients(kAsking);
     std::atomic<std::size_t> count = 0;

@@ -37,20 +37,20 @@ TEST(Downloads, AreServedByTheSite) {
   ManualClock clock;
   Downloads downloads;
   const HttpHandler site = with_downloads(
-      [](std::string_view, std::string_view) {
+      [](const HttpRequest&) {
         return HttpResponse{404, "", "", {}};
       },
       downloads, clock);
   const std::string path = downloads.add({"a.vatrec", "one"}, clock.now()).value();
-  EXPECT_EQ(site("POST", path).status, 404);
-  EXPECT_EQ(site("HEAD", path).status, 404);
-  const HttpResponse response = site("GET", path);
+  EXPECT_EQ(site({"POST", path}).status, 404);
+  EXPECT_EQ(site({"HEAD", path}).status, 404);
+  const HttpResponse response = site({"GET", path});
   EXPECT_EQ(response.status, 200);
   EXPECT_EQ(response.body, "one");
-  EXPECT_EQ(site("GET", path).status, 404);
+  EXPECT_EQ(site({"GET", path}).status, 404);
   const std::string late = downloads.add({"a.vatrec", "one"}, clock.now()).value();
   clock.advance(Downloads::kPatience);
-  EXPECT_EQ(site("GET", late).status, 404);
+  EXPECT_EQ(site({"GET", late}).status, 404);
 }
 
 // Recordings that clients upload in parts.

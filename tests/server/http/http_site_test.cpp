@@ -134,19 +134,19 @@ TEST_F(HttpSite, AnswersByThePath) {
              "vat_threads 4\n"}}) {
     for (const char* target : expected.targets) {
       SCOPED_TRACE(target);
-      const HttpResponse reply = site("GET", target);
+      const HttpResponse reply = site({"GET", target});
       EXPECT_EQ(reply.status, expected.status);
       EXPECT_EQ(reply.content_type, expected.type);
       EXPECT_EQ(header(reply, "Cache-Control"), expected.cache);
       EXPECT_EQ(reply.body, expected.body);
-      EXPECT_EQ(site("HEAD", target).status, expected.status);
+      EXPECT_EQ(site({"HEAD", target}).status, expected.status);
     }
   }
 }
 
 TEST_F(HttpSite, OtherMethodsAreRefused) {
   for (const char* method : {"POST", "PUT", "DELETE", "OPTIONS", "TRACE", "PATCH", "get"}) {
-    const HttpResponse reply = site(method, "/");
+    const HttpResponse reply = site({method, "/"});
     EXPECT_EQ(reply.status, 405) << method;
     EXPECT_EQ(header(reply, "Allow"), "GET, HEAD");
     EXPECT_EQ(reply.body.find("<title>"), std::string::npos);
@@ -160,7 +160,7 @@ TEST_F(HttpSite, NoPathLeadsOutOfTheFolderOrToHiddenFilesAndLinks) {
         "//index.html", "/INDEX.HTML", "//etc/passwd", "/link.txt", "/linked/secret.txt",
         "/broken.txt", "/.env", "/.git/config", "/assets/", "/assets", "/assets/index-old.js",
         "/~root", absolute.c_str()}) {
-    const HttpResponse reply = site("GET", target);
+    const HttpResponse reply = site({"GET", target});
     EXPECT_TRUE(reply.status == 400 || reply.status == 404) << target << ' ' << reply.status;
     EXPECT_EQ(reply.body.find("secret"), std::string::npos) << target;
     EXPECT_EQ(header(reply, "Cache-Control"), "no-store") << target;
@@ -170,7 +170,7 @@ TEST_F(HttpSite, NoPathLeadsOutOfTheFolderOrToHiddenFilesAndLinks) {
 TEST_F(HttpSite, EveryAnswerHasTheSecurityHeaders) {
   for (const char* target :
        {"/", "/missing", "/healthz", "/readyz", "/version", "/metrics", "/%zz"}) {
-    const HttpResponse reply = site("GET", target);
+    const HttpResponse reply = site({"GET", target});
     EXPECT_EQ(header(reply, "X-Content-Type-Options"), "nosniff") << target;
     EXPECT_EQ(header(reply, "Referrer-Policy"), "no-referrer") << target;
     for (const char* part :
@@ -188,18 +188,18 @@ TEST_F(HttpSite, ReadyIsWhoTakesNewSessions) {
                                                      {ServerPhase::draining, "draining"}};
   for (const auto& [now, name] : phases) {
     phase = now;
-    const HttpResponse reply = site("GET", "/readyz");
+    const HttpResponse reply = site({"GET", "/readyz"});
     EXPECT_EQ(reply.status, now == ServerPhase::ready ? 200 : 503) << name;
     EXPECT_EQ(reply.body, "{\"status\":\"" + name + "\"}\n");
-    EXPECT_EQ(site("GET", "/healthz").status, 200) << name;
+    EXPECT_EQ(site({"GET", "/healthz"}).status, 200) << name;
   }
 }
 
 TEST_F(HttpSite, WithoutAViewerTheRootSaysHowToBuildIt) {
   const HttpHandler empty = make_site(folder.path() / "none");
-  EXPECT_EQ(empty("GET", "/").status, 503);
-  EXPECT_THAT(empty("GET", "/").body, HasSubstr("./vat serve"));
-  EXPECT_EQ(empty("GET", "/assets/x.js").status, 404);
+  EXPECT_EQ(empty({"GET", "/"}).status, 503);
+  EXPECT_THAT(empty({"GET", "/"}).body, HasSubstr("./vat serve"));
+  EXPECT_EQ(empty({"GET", "/assets/x.js"}).status, 404);
 }
 
 TEST_F(HttpSite, AFileInPlaceOfTheFolderIsAnError) {

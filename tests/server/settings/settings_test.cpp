@@ -89,6 +89,26 @@ TEST_F(Settings, ValuesOutOfRangeNameTheRange) {
   EXPECT_FALSE(apply_file(table, "/no/such/file", sources));
 }
 
+TEST_F(Settings, ListsAreSeparatedByCommas) {
+  ASSERT_TRUE(apply_text(R"({"public_name": "a.example,b.example:8443",
+                             "trusted_proxy": "10.0.0.1,fd00::/8",
+                             "allow_origin": "https://a.example,http://b:1"})"));
+  EXPECT_THAT(target.public_name, ElementsAre("a.example", "b.example:8443"));
+  EXPECT_THAT(target.trusted_proxy, ElementsAre("10.0.0.1", "fd00::/8"));
+  EXPECT_THAT(target.allow_origin, ElementsAre("https://a.example", "http://b:1"));
+  for (const char* invalid :
+       {R"({"public_name": "a.example,https://b.example"})", R"({"public_name": "a,,b"})",
+        R"({"public_name": "*.example"})", R"({"trusted_proxy": "10.0.0.1,10.0.0.0/33"})",
+        R"({"trusted_proxy": "proxy.example"})", R"({"allow_origin": "https://a.example,*"})"}) {
+    const Status applied = apply_text(invalid);
+    ASSERT_FALSE(applied) << invalid;
+    EXPECT_THAT(applied.errors().front().message, HasSubstr("separated by commas")) << invalid;
+  }
+  EXPECT_THAT(target.public_name, ElementsAre("a.example", "b.example:8443"));
+  ASSERT_TRUE(apply_text(R"({"public_name": ""})"));
+  EXPECT_THAT(target.public_name, IsEmpty());
+}
+
 // The ends of every range, and one beyond each.
 TEST_F(Settings, RangesHoldAtTheirEnds) {
   for (const Setting& setting : table) {

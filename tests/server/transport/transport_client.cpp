@@ -74,6 +74,11 @@ std::string RawClient::read_all() {
   return all;
 }
 
+void RawClient::end_sending() {
+  error_code ignored;  // the peer can have closed the connection
+  socket_.shutdown(asio::socket_base::shutdown_send, ignored);
+}
+
 void RawClient::reset() {
   socket_.set_option(asio::socket_base::linger(true, 0));
   socket_.close();
@@ -110,13 +115,43 @@ std::string request(std::uint16_t port, std::string_view method, std::string_vie
          "\r\n" + std::string(body);
 }
 
+/// Reads the head of a reply. `rest` receives the bytes after it.
+HttpReply read_head(RawClient& client, std::string& rest) {
+  std::string bytes;
+  while (bytes.find("\r\n\r\n") == std::string::npos) {
+    const std::string part = client.read_some();
+    if (part.empty()) throw std::runtime_error("the connection ended in the reply's head");
+    bytes += part;
+  }
+  const std::size_t end = bytes.find("\r\n\r\n") + 4;
+  rest = bytes.substr(end);
+  return parse_reply(bytes.substr(0, end));
+}
+
 }  // namespace
 
 HttpReply http(std::uint16_t port, std::string_view method, std::string_view target,
                std::string_view headers, std::string_view body) {
   RawClient client(port);
-  client.write(request(port, method, target, headers, body));
+  client.write(request(port, method, target, "Connection: close\r\n" + std::string(headers), body));
   return parse_reply(client.read_all());
+}
+
+HttpReply http_again(RawClient& client, std::string_view target, std::string_view headers) {
+  client.write(request(80, "GET", target, headers, ""));
+  std::string rest;
+  HttpReply reply = read_head(client, rest);
+  const std::size_t size = std::stoul(reply.header("Content-Length"));
+  if (rest.size() < size) rest += client.read_exactly(size - rest.size());
+  reply.body = rest;
+  return reply;
+}
+
+int status_for_host(std::uint16_t port, const std::string& host, const std::string& headers) {
+  RawClient client(port);
+  client.write("GET /ws HTTP/1.1\r\nHost: " + host + "\r\n" + headers + "\r\n");
+  std::string rest;
+  return read_head(client, rest).status;
 }
 
 std::string client_frame(int opcode, std::string_view payload, bool final) {
@@ -141,23 +176,6 @@ std::string upgrade_headers(std::string_view subprotocol, std::string_view versi
   }
   return headers;
 }
-
-namespace {
-
-/// Reads the head of a reply. `rest` receives the bytes after it.
-HttpReply read_head(RawClient& client, std::string& rest) {
-  std::string bytes;
-  while (bytes.find("\r\n\r\n") == std::string::npos) {
-    const std::string part = client.read_some();
-    if (part.empty()) throw std::runtime_error("the connection ended in the reply's head");
-    bytes += part;
-  }
-  const std::size_t end = bytes.find("\r\n\r\n") + 4;
-  rest = bytes.substr(end);
-  return parse_reply(bytes.substr(0, end));
-}
-
-}  // namespace
 
 HttpReply try_upgrade(std::uint16_t port, std::string_view target, std::string_view headers) {
   RawClient client(port);

@@ -31,6 +31,8 @@ class RawClient {
   std::string read_exactly(std::size_t size);
   /// Returns all bytes until the peer closes or resets the connection.
   std::string read_all();
+  /// Ends the stream to the peer. The peer can still send.
+  void end_sending();
   /// Ends the connection with a reset, like a killed process with unread bytes.
   void reset();
   void close();
@@ -52,9 +54,15 @@ struct HttpReply {
 };
 
 HttpReply parse_reply(const std::string& bytes);
-/// Sends one request with the given header lines, each ending in CRLF.
+/// Sends one request with the given header lines, each ending in CRLF. The connection is closed
+/// after the reply.
 HttpReply http(std::uint16_t port, std::string_view method, std::string_view target,
                std::string_view headers = "", std::string_view body = "");
+/// Sends a GET request on an open connection, and returns the reply. The reply must have a header
+/// Content-Length.
+HttpReply http_again(RawClient& client, std::string_view target, std::string_view headers = "");
+/// Returns the status of a GET request with this Host header, and further header lines.
+int status_for_host(std::uint16_t port, const std::string& host, const std::string& headers = "");
 
 struct Frame {
   int opcode = 0;  ///< 1 text, 2 binary, 8 close, 9 ping, 10 pong

@@ -119,10 +119,8 @@ class TransportTest : public testing::Test {
       std::lock_guard lock(faults_mutex_);
       faults_.emplace_back(fault);
     };
-    transport = make_websocket_transport(settings, recorder,
-                                         [this](std::string_view method, std::string_view target) {
-                                           return http_handler(method, target);
-                                         });
+    transport = make_websocket_transport(
+        settings, recorder, [this](const HttpRequest& request) { return http_handler(request); });
     port = transport->start();
   }
   void TearDown() override {
@@ -138,10 +136,9 @@ class TransportTest : public testing::Test {
 
   TransportSettings settings;
   Recorder recorder;
-  std::function<HttpResponse(std::string_view, std::string_view)> http_handler =
-      [](std::string_view, std::string_view target) {
-        return HttpResponse{200, "text/plain", std::string(target), {}};
-      };
+  HttpHandler http_handler = [](const HttpRequest& request) {
+    return HttpResponse{200, "text/plain", std::string(request.target), {}};
+  };
   std::vector<std::string> expected_faults;
   std::unique_ptr<Transport> transport;
   std::uint16_t port = 0;

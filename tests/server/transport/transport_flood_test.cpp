@@ -74,9 +74,9 @@ TEST_F(TransportFloodTest, DripsOfHeadersAndBodies) {
     std::vector<std::unique_ptr<RawClient>> drips;
     for (int i = 0; i < 200; ++i) {
       drips.push_back(std::make_unique<RawClient>(port));
-      drips.back()->write(i % 2 == 0
-                              ? "GET /ws HTTP/1.1\r\nHost: x\r\nX-Header: "
-                              : "POST / HTTP/1.1\r\nHost: x\r\nContent-Length: 10000\r\n\r\n");
+      drips.back()->write(
+          i % 2 == 0 ? "GET /ws HTTP/1.1\r\nHost: localhost\r\nX-Header: "
+                     : "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 10000\r\n\r\n");
     }
     const auto are_cut_off = [&] {
       pause(milliseconds(100));

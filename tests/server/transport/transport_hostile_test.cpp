@@ -61,7 +61,7 @@ TEST_F(TransportHostileTest, AHandshakeThatNeverEndsIsCutOff) {
   start();
   RawClient silent(port);
   RawClient half(port);
-  half.write("GET /ws HTTP/1.1\r\nHost: x\r\n");
+  half.write("GET /ws HTTP/1.1\r\nHost: localhost\r\n");
   RawClient slow(port);
   const auto begin = std::chrono::steady_clock::now();
   std::thread drip([&] {
@@ -201,7 +201,7 @@ TEST_F(TransportHostileTest, AnAddressHasItsShareOfTheSockets) {
   for (int i = 0; i < 100; ++i) idle.push_back(std::make_unique<RawClient>(port));
   EXPECT_EQ(idle.back()->read_all(), "");  // immediately, long before the handshake's time limit
   RawClient elsewhere(port, "127.0.0.2");
-  elsewhere.write("GET / HTTP/1.1\r\nHost: x\r\n\r\n");
+  elsewhere.write("GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
   EXPECT_NE(elsewhere.read_all().find(" 200 "), std::string::npos);
 }
 

@@ -1,3 +1,5 @@
+#include <gmock/gmock.h>
+
 #include <atomic>
 #include <thread>
 
@@ -10,9 +12,11 @@ namespace {
 class TransportHttpTest : public TransportTest {};
 
 TEST_F(TransportHttpTest, PassesOnTheHandlersAnswer) {
-  http_handler = [](std::string_view method, std::string_view target) {
-    return HttpResponse{
-        404, "text/plain", std::string(method) + " " + std::string(target), {{"X-Test", "yes"}}};
+  http_handler = [](const HttpRequest& request) {
+    return HttpResponse{404,
+                        "text/plain",
+                        std::string(request.method) + " " + std::string(request.target),
+                        {{"X-Test", "yes"}}};
   };
   start();
   const HttpReply reply = http(port, "GET", "/a/../b%00?q=1");
@@ -34,9 +38,7 @@ TEST_F(TransportHttpTest, HeadHasTheLengthAndNoBody) {
 }
 
 TEST_F(TransportHttpTest, AnEmptyBodyHasALength) {
-  http_handler = [](std::string_view, std::string_view) {
-    return HttpResponse{204, "text/plain", "", {}};
-  };
+  http_handler = [](const HttpRequest&) { return HttpResponse{200, "text/plain", "", {}}; };
   start();
   EXPECT_EQ(http(port, "GET", "/").header("Content-Length"), "0");
 }
@@ -44,7 +46,7 @@ TEST_F(TransportHttpTest, AnEmptyBodyHasALength) {
 TEST_F(TransportHttpTest, SendsALargeBodyWhole) {
   std::string large(16 * 1024 * 1024, '\0');
   for (std::size_t i = 0; i < large.size(); ++i) large[i] = static_cast<char>(i * 31 >> 8);
-  http_handler = [&](std::string_view, std::string_view) {
+  http_handler = [&](const HttpRequest&) {
     return HttpResponse{200, "application/octet-stream", large, {}};
   };
   start();
@@ -54,9 +56,7 @@ TEST_F(TransportHttpTest, SendsALargeBodyWhole) {
 }
 
 TEST_F(TransportHttpTest, AHandlerThatThrowsGives500) {
-  http_handler = [](std::string_view, std::string_view) -> HttpResponse {
-    throw std::runtime_error("broken");
-  };
+  http_handler = [](const HttpRequest&) -> HttpResponse { throw std::runtime_error("broken"); };
   expected_faults = {"http: broken"};
   start();
   EXPECT_EQ(http(port, "GET", "/").status, 500);
@@ -81,12 +81,127 @@ TEST_F(TransportHttpTest, MalformedRequestsGetAnError) {
     return parse_reply(client.read_all()).status;
   };
   EXPECT_EQ(status("GET / HTTP/1.1\r\n\r\n"), 400);  // no Host
-  EXPECT_EQ(status("GET /\r\nHost: x\r\n\r\n"), 400);
-  EXPECT_EQ(status("G\x01T / HTTP/1.1\r\nHost: x\r\n\r\n"), 400);
+  EXPECT_EQ(status("GET /\r\nHost: localhost\r\n\r\n"), 400);
+  EXPECT_EQ(status("G\x01T / HTTP/1.1\r\nHost: localhost\r\n\r\n"), 400);
   EXPECT_EQ(status("GET / HTTP/1.1\r\nHost: x:99999999\r\n\r\n"), 400);
-  EXPECT_EQ(status("GET / HTTP/1.1\r\nHost: x\r\nnonsense\r\n\r\n"), 400);
-  EXPECT_EQ(status("GET / HTTP/1.1\r\nHost: x\r\nX: " + std::string(20000, 'x') + "\r\n\r\n"), 431);
-  EXPECT_EQ(status("GET / HTTP/1.1\r\nHost: x\r\n\r\n"), 200);
+  EXPECT_EQ(status("GET / HTTP/1.1\r\nHost: localhost\r\nnonsense\r\n\r\n"), 400);
+  EXPECT_EQ(
+      status("GET / HTTP/1.1\r\nHost: localhost\r\nX: " + std::string(20000, 'x') + "\r\n\r\n"),
+      431);
+  EXPECT_EQ(status("GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n"), 200);
+}
+
+// A page at a name that resolves to this server (DNS rebinding) reaches neither files nor
+// WebSocket.
+TEST_F(TransportHttpTest, AForeignHostGets421) {
+  settings.public_names = {"vat.example"};
+  start();
+  const auto statuses = [&](const std::string& host) {
+    const std::string origin = "Origin: http://" + host + "\r\n";
+    return std::pair(status_for_host(port, host),
+                     status_for_host(port, host, upgrade_headers() + origin));
+  };
+  for (const char* good : {"localhost", "127.0.0.1:80", "[::1]", "192.0.2.1", "Vat.Example:1"}) {
+    EXPECT_EQ(statuses(good), std::pair(200, 101)) << good;
+  }
+  for (const char* foreign : {"evil.example", "vat.example.evil", "localhost, evil.example"}) {
+    EXPECT_EQ(statuses(foreign), std::pair(421, 421)) << foreign;
+  }
+}
+
+TEST_F(TransportHttpTest, TheReplyToAForeignHostNamesTheSetting) {
+  start();
+  RawClient client(port);
+  client.write("GET / HTTP/1.1\r\nHost: evil.example\r\nConnection: close\r\n\r\n");
+  const HttpReply reply = parse_reply(client.read_all());
+  EXPECT_EQ(reply.head.substr(0, reply.head.find("\r\n")), "HTTP/1.1 421 Misdirected Request");
+  EXPECT_NE(reply.body.find("--public-name"), std::string::npos) << reply.body;
+}
+
+TEST_F(TransportHttpTest, ResponsesWithoutContentHaveNoLength) {
+  for (const int status : {204, 304}) {
+    http_handler = [=](const HttpRequest&) {
+      return HttpResponse{status, "text/plain", "", {{"ETag", "\"x\""}}};
+    };
+    start();
+    const HttpReply reply = http(port, "GET", "/");
+    EXPECT_EQ(reply.status, status);
+    EXPECT_EQ(reply.header("Content-Length"), "");
+    EXPECT_EQ(reply.header("Content-Type"), "");
+    EXPECT_EQ(reply.header("ETag"), "\"x\"");
+    transport->stop();
+  }
+}
+
+TEST_F(TransportHttpTest, PassesOnTheHeadersOfTheRequest) {
+  http_handler = [](const HttpRequest& request) {
+    return HttpResponse{200,
+                        "text/plain",
+                        std::string(request.accept_encoding) + '|' +
+                            std::string(request.if_none_match) + '|' +
+                            std::string(request.authorization),
+                        {}};
+  };
+  start();
+  EXPECT_EQ(http(port, "GET", "/").body, "||");
+  EXPECT_EQ(http(port, "GET", "/",
+                 "accept-encoding: br\r\nAccept-Encoding: gzip\r\nIf-None-Match: \"x\"\r\n"
+                 "Authorization: Bearer y\r\n")
+                .body,
+            "br, gzip|\"x\"|Bearer y");
+}
+
+/// A server behind a proxy at 127.0.0.2.
+class TransportProxyTest : public TransportTest {
+ protected:
+  TransportProxyTest() { settings.trusted_proxies = {"127.0.0.2"}; }
+
+  /// Opens a WebSocket for a client of the peer. Returns the status.
+  int open(const char* peer, const std::string& client) {
+    open_.push_back(std::make_unique<RawClient>(port, peer));
+    open_.back()->write("GET /ws HTTP/1.1\r\nHost: localhost\r\n" + upgrade_headers() +
+                        "X-Forwarded-For: " + client + "\r\n\r\n");
+    return parse_reply(open_.back()->read_some()).status;
+  }
+
+ private:
+  std::vector<std::unique_ptr<RawClient>> open_;
+};
+
+TEST_F(TransportProxyTest, ClientsAreCountedByTheirOwnAddresses) {
+  settings.max_connections_per_address = 1;
+  start();
+  EXPECT_EQ(open("127.0.0.2", "198.51.100.1"), 101);
+  EXPECT_EQ(open("127.0.0.2", "198.51.100.2"), 101);
+  EXPECT_EQ(open("127.0.0.3", "198.51.100.3"), 101);
+  ASSERT_TRUE(recorder.wait_opened(3));
+  const auto address_of = [&](ConnectionId id) { return recorder.connection(id)->address(); };
+  EXPECT_EQ(address_of(1), "198.51.100.1");
+  EXPECT_EQ(address_of(2), "198.51.100.2");
+  EXPECT_EQ(address_of(3), "127.0.0.3") << "not a trusted proxy";
+}
+
+// More sockets than one address may have. Each client still has the limit of an address.
+TEST_F(TransportProxyTest, TheSocketsOfTheProxyAreLimitedByClient) {
+  constexpr int kMaxOtherSockets = 64;
+  settings.max_connections_per_address = 1;
+  std::vector<std::string> refusals;
+  settings.count_refusal = [&](std::string_view limit) { refusals.emplace_back(limit); };
+  start();
+  std::vector<std::unique_ptr<RawClient>> silent;
+  for (int i = 0; i < kMaxOtherSockets + 20; ++i) {
+    silent.push_back(std::make_unique<RawClient>(port, "127.0.0.2"));
+  }
+  EXPECT_EQ(open("127.0.0.2", "198.51.100.1"), 101);
+  int status = 101;
+  for (int i = 0; i <= kMaxOtherSockets && status == 101; ++i) {
+    status = open("127.0.0.2", "198.51.100.1");
+  }
+  EXPECT_EQ(status, 429);
+  EXPECT_EQ(open("127.0.0.2", "198.51.100.2"), 101);
+  transport->stop();
+  EXPECT_THAT(refusals, testing::Each("connections_per_address"));
+  EXPECT_FALSE(refusals.empty());
 }
 
 class TransportUpgradeTest : public TransportTest {

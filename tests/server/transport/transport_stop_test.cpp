@@ -217,7 +217,7 @@ class SlowHandler {
 // closed its half. The server is busy meanwhile, and processes all of this at once.
 TEST_F(TransportSocketsTest, AreGivenBackAfterTheServerHasClosed) {
   SlowHandler handler;
-  http_handler = [&](std::string_view, std::string_view) { return handler(); };
+  http_handler = [&](const HttpRequest&) { return handler(); };
   start();
   WsClient client(port);
   ASSERT_TRUE(recorder.wait_opened(1));
@@ -225,7 +225,7 @@ TEST_F(TransportSocketsTest, AreGivenBackAfterTheServerHasClosed) {
   EXPECT_EQ(client.read_close(), 4003);
   client.raw().read_all();
   RawClient slow(port);
-  slow.write("GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n");
+  slow.write("GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n");
   handler.wait_until_asked();
   client.raw().close();
   handler.answer();
@@ -268,11 +268,11 @@ TEST_F(TransportSocketsTest, ManyMayWaitToBeAccepted) {
 // A slow handler delays the clients that connect meanwhile, but does not close their connections.
 TEST_F(TransportSocketsTest, WhoComesWhileAHandlerIsSlowIsServed) {
   SlowHandler handler;
-  http_handler = [&](std::string_view, std::string_view) { return handler(); };
+  http_handler = [&](const HttpRequest&) { return handler(); };
   recorder.echo = true;
   start();
   RawClient slow(port);
-  slow.write("GET / HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n");
+  slow.write("GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: close\r\n\r\n");
   std::vector<std::unique_ptr<RawClient>> waiting;
   const std::string request =
       "GET /ws HTTP/1.1\r\nHost: 127.0.0.1\r\n" + upgrade_headers() + "\r\n";

@@ -45,6 +45,14 @@ class TlsClient {
   TlsClient& operator=(const TlsClient&) = delete;
 
   bool is_open() const { return is_open_; }
+  /// Returns the common name of the server's certificate.
+  std::string server_name() const {
+    const Owned<X509> certificate(SSL_get1_peer_certificate(tls_.get()), X509_free);
+    std::array<char, 100> name{};
+    X509_NAME_get_text_by_NID(X509_get_subject_name(certificate.get()), NID_commonName, name.data(),
+                              static_cast<int>(name.size()));
+    return name.data();
+  }
   void write(std::string_view bytes) {
     if (SSL_write(tls_.get(), bytes.data(), static_cast<int>(bytes.size())) <= 0) {
       throw std::runtime_error("the peer has gone");
@@ -92,14 +100,14 @@ class TransportTlsTest : public TransportTest {
 constexpr std::size_t kToTheEnd = static_cast<std::size_t>(-1);
 
 TEST_F(TransportTlsTest, ServesPages) {
-  http_handler = [](std::string_view, std::string_view) {
+  http_handler = [](const HttpRequest&) {
     return HttpResponse{200, "text/plain", std::string(3'000'000, 'x'), {}};
   };
   start();
   for (const int version : {TLS1_2_VERSION, TLS1_3_VERSION}) {
     TlsClient client(port, version);
     ASSERT_TRUE(client.is_open());
-    client.write("GET / HTTP/1.1\r\nHost: x\r\n\r\n");
+    client.write("GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
     const HttpReply reply = parse_reply(client.read(kToTheEnd));
     EXPECT_EQ(reply.status, 200);
     EXPECT_EQ(reply.body.size(), 3'000'000U);
@@ -131,7 +139,7 @@ TEST_F(TransportTlsTest, RefusesWhatIsOlderThan12) {
 TEST_F(TransportTlsTest, AnswersNothingInPlainText) {
   start();
   RawClient client(port);
-  client.write("GET / HTTP/1.1\r\nHost: x\r\n\r\n");
+  client.write("GET / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n");
   EXPECT_EQ(client.read_all().find("HTTP/"), std::string::npos);
   EXPECT_TRUE(TlsClient(port, TLS1_3_VERSION).is_open());
 }
@@ -144,6 +152,62 @@ TEST_F(TransportTlsTest, AHandshakeThatNeverEndsIsCutOff) {
   half.write(std::string("\x16\x03\x01\x02", 4));
   EXPECT_EQ(silent.read_all(), "");
   EXPECT_EQ(half.read_all(), "");
+}
+
+TEST_F(TransportTlsTest, ANewCertificateIsForNewConnections) {
+  recorder.echo = true;
+  settings.endpoints = 2;
+  start();
+  TlsClient before(port, TLS1_3_VERSION);
+  EXPECT_EQ(before.server_name(), "a test");
+  before.write("GET /ws HTTP/1.1\r\nHost: 127.0.0.1\r\n" + upgrade_headers() + "\r\n");
+  EXPECT_NE(before.read(1).find(" 101 "), std::string::npos);
+  write_certificate(settings.tls_certificate, settings.tls_key, "DNS:localhost", "renewed");
+  transport->read_certificate();
+  for (int i = 0; i < 20; ++i) {  // on both endpoints
+    EXPECT_EQ(TlsClient(port, TLS1_3_VERSION).server_name(), "renewed");
+  }
+  before.write(client_frame(1, "still here"));
+  EXPECT_EQ(before.read(12).substr(2), "still here");
+}
+
+TEST_F(TransportTlsTest, ABrokenCertificateLeavesThePreviousOne) {
+  start();
+  folder.write("certificate.pem", "not a certificate");
+  try {
+    transport->read_certificate();
+    ADD_FAILURE() << "accepted";
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(std::string(error.what()).find(settings.tls_certificate), 0U) << error.what();
+  }
+  EXPECT_EQ(TlsClient(port, TLS1_3_VERSION).server_name(), "a test");
+}
+
+// The header is valid for all ports of a name, so that localhost does not get it.
+TEST_F(TransportTlsTest, OnlyPublicNamesGetStrictTransportSecurity) {
+  settings.public_names = {"vat.example"};
+  start();
+  for (const auto& [host, expected] : {std::pair("vat.example", "max-age=31536000"),
+                                       std::pair("localhost", ""), std::pair("127.0.0.1", "")}) {
+    TlsClient client(port, TLS1_3_VERSION);
+    client.write("GET / HTTP/1.1\r\nHost: " + std::string(host) + "\r\nConnection: close\r\n\r\n");
+    EXPECT_EQ(parse_reply(client.read(kToTheEnd)).header("Strict-Transport-Security"), expected);
+  }
+}
+
+TEST_F(TransportTlsTest, AConnectionServesSeveralRequests) {
+  start();
+  TlsClient client(port, TLS1_3_VERSION);
+  for (const char* target : {"/one", "/two"}) {
+    client.write("GET " + std::string(target) + " HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    std::string reply;
+    while (!reply.ends_with(target)) {
+      const std::string part = client.read(1);
+      ASSERT_NE(part, "") << "the connection is closed";
+      reply += part;
+    }
+    EXPECT_EQ(parse_reply(reply).status, 200);
+  }
 }
 
 TEST_F(TransportTlsTest, FilesThatCannotBeUsedAreNamed) {
