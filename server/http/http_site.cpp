@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "server/http/negotiation.h"
 #include "server/http/request_path.h"
 
 namespace vat {
@@ -18,12 +19,12 @@ constexpr const char* kPrometheusText = "text/plain; version=0.0.4; charset=utf-
 /// Vite puts a hash of the content into the names of these.
 constexpr std::string_view kHashedFolder = "/assets/";
 
-/// The viewer loads its own files only, makes workers from its own bundles, sets styles from
-/// scripts, and opens a WebSocket to its server; 'self' does not cover ws: in every browser.
+/// The viewer loads only its own files, and connects only to its server. 'self' does not cover ws:
+/// in all browsers.
 constexpr const char* kContentSecurityPolicy =
-    "default-src 'self'; worker-src 'self' blob:; connect-src 'self' ws: wss:; "
-    "style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; "
-    "object-src 'none'; base-uri 'self'; frame-ancestors 'self'";
+    "default-src 'none'; script-src 'self'; worker-src 'self'; connect-src 'self' ws: wss:; "
+    "style-src 'self'; img-src 'self'; base-uri 'none'; form-action 'none'; "
+    "frame-ancestors 'self'";
 
 constexpr const char* kNotBuilt = R"(<!doctype html>
 <html lang="en">
@@ -39,14 +40,44 @@ HttpResponse text(int status, std::string message) {
   return {status, kPlainText, std::move(message), {}};
 }
 
-HttpResponse viewer_file(const StaticFiles& viewer, const std::string& path) {
+/// Returns the encoding of the greatest weight; among equal ones, the shortest content.
+Encoding preferred_encoding(const StaticFiles::File& file, std::string_view accept_encoding) {
+  Encoding best = Encoding::identity;
+  double best_weight = weight_of(best, accept_encoding);
+  for (const auto& [encoding, content] : file.contents) {
+    const double weight = weight_of(encoding, accept_encoding);
+    const bool is_shorter = content.bytes.size() < file.contents.at(best).bytes.size();
+    if (weight < best_weight || weight == 0 || (weight == best_weight && !is_shorter)) continue;
+    best = encoding;
+    best_weight = weight;
+  }
+  return best;
+}
+
+HttpResponse file_response(const StaticFiles::File& file, bool is_hashed,
+                           const HttpRequest& request) {
+  const Encoding encoding = preferred_encoding(file, request.accept_encoding);
+  const StaticFiles::Content& content = file.contents.at(encoding);
+  HttpResponse response{200, file.content_type, {}, {{"ETag", content.tag}}};
+  response.headers.emplace_back("Cache-Control",
+                                is_hashed ? "public, max-age=31536000, immutable" : "no-cache");
+  if (file.contents.size() > 1) response.headers.emplace_back("Vary", "Accept-Encoding");
+  if (contains_tag(request.if_none_match, content.tag)) {
+    response.status = 304;
+    return response;
+  }
+  if (encoding != Encoding::identity) {
+    response.headers.emplace_back("Content-Encoding", to_string(encoding));
+  }
+  response.body = content.bytes;
+  return response;
+}
+
+HttpResponse viewer_file(const StaticFiles& viewer, const std::string& path,
+                         const HttpRequest& request) {
   const bool is_root = path == "/";
   if (const StaticFiles::File* file = viewer.find(is_root ? "/index.html" : path)) {
-    const bool is_hashed = path.starts_with(kHashedFolder);
-    return {200,
-            file->content_type,
-            file->content,
-            {{"Cache-Control", is_hashed ? "public, max-age=31536000, immutable" : "no-cache"}}};
+    return file_response(*file, path.starts_with(kHashedFolder), request);
   }
   if (is_root) return {503, "text/html; charset=utf-8", kNotBuilt, {}};
   return text(404, "Not found.\n");
@@ -70,7 +101,7 @@ HttpResponse answer(const StaticFiles& viewer, const SiteSources& sources,
   if (*path == "/readyz") return readiness(sources.phase());
   if (*path == "/version") return {200, kJson, sources.version + '\n', {}};
   if (*path == "/metrics") return {200, kPrometheusText, sources.metrics(), {}};
-  return viewer_file(viewer, *path);
+  return viewer_file(viewer, *path, request);
 }
 
 void add_common_headers(HttpResponse& response) {
@@ -80,6 +111,7 @@ void add_common_headers(HttpResponse& response) {
   response.headers.emplace_back("Content-Security-Policy", kContentSecurityPolicy);
   response.headers.emplace_back("X-Content-Type-Options", "nosniff");
   response.headers.emplace_back("Referrer-Policy", "no-referrer");
+  response.headers.emplace_back("Cross-Origin-Resource-Policy", "same-origin");
 }
 
 }  // namespace

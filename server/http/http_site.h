@@ -17,7 +17,8 @@ struct SiteSources {
 };
 
 /// Returns a handler for GET and HEAD:
-/// - files of the viewer ("/" is "/index.html"). Without a viewer, "/" describes how to build it.
+/// - files of the viewer ("/" is "/index.html") in the encoding that the client prefers, with a tag
+///   for If-None-Match. Without a viewer, "/" describes how to build it.
 /// - "/healthz": 200 while the process runs.
 /// - "/readyz": 200 if the server admits sessions, 503 while the server starts, recovers or drains.
 /// - "/version" and "/metrics".

@@ -1,5 +1,9 @@
 #include "server/http/static_files.h"
 
+#include <openssl/sha.h>
+
+#include <array>
+#include <cstdint>
 #include <fstream>
 #include <string>
 #include <system_error>
@@ -47,6 +51,19 @@ Result<std::string> read_file(const fs::path& path, std::size_t max_size) {
   return content;
 }
 
+std::string tag_of(const std::string& bytes) {
+  constexpr std::size_t kTagBytes = 16;  // enough to tell files apart
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::array<std::uint8_t, SHA256_DIGEST_LENGTH> hash{};
+  SHA256(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), hash.data());
+  std::string tag = "\"";
+  for (std::size_t i = 0; i < kTagBytes; ++i) {
+    tag += kDigits[hash[i] >> 4];
+    tag += kDigits[hash[i] & 15];
+  }
+  return tag + '"';
+}
+
 }  // namespace
 
 std::string content_type_of(const fs::path& name) {
@@ -81,10 +98,25 @@ Result<StaticFiles> StaticFiles::read(const fs::path& folder, const StaticFilesL
     Result<std::string> content = read_file(path, left);
     if (!content) return content.errors();
     left -= content.value().size();
-    files.files_.emplace("/" + path.lexically_relative(folder).generic_string(),
-                         File{content_type_of(path), std::move(content).value()});
+    std::string tag = tag_of(content.value());
+    files.files_.emplace(
+        "/" + path.lexically_relative(folder).generic_string(),
+        File{content_type_of(path),
+             {{Encoding::identity, Content{std::move(content).value(), std::move(tag)}}}});
   }
+  files.join_encodings();
   return files;
+}
+
+void StaticFiles::join_encodings() {
+  for (const auto& [encoding, extension] :
+       {std::pair(Encoding::brotli, ".br"), std::pair(Encoding::gzip, ".gz")}) {
+    for (auto& [path, file] : files_) {
+      auto encoded = files_.extract(path + extension);
+      if (encoded.empty()) continue;
+      file.contents[encoding] = std::move(encoded.mapped().contents.at(Encoding::identity));
+    }
+  }
 }
 
 const StaticFiles::File* StaticFiles::find(std::string_view path) const {

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "core/support/result.h"
+#include "server/http/negotiation.h"
 
 namespace vat {
 
@@ -17,12 +18,17 @@ struct StaticFilesLimits {
 };
 
 /// Files of a folder, which are read once at the start. No request path can access files outside
-/// the folder. A rebuild of the viewer during operation cannot mix old and new files.
+/// the folder. A rebuild of the viewer during operation cannot mix old and new files. The files
+/// NAME.br and NAME.gz are encodings of the file NAME, and have no separate paths.
 class StaticFiles {
  public:
+  struct Content {
+    std::string bytes;
+    std::string tag;  ///< value of the header ETag: a quoted hash of the bytes
+  };
   struct File {
     std::string content_type;
-    std::string content;
+    std::map<Encoding, Content> contents;  ///< always has Encoding::identity
   };
 
   /// Reads the regular files of the folder and its subfolders, except symbolic links and names that
@@ -36,6 +42,8 @@ class StaticFiles {
   bool empty() const { return files_.empty(); }
 
  private:
+  void join_encodings();
+
   std::map<std::string, File, std::less<>> files_;
 };
 

@@ -8,6 +8,7 @@ import { fileURLToPath } from 'node:url';
 import { Observer } from '../../tests/browser/support/observer';
 import { Server } from '../../tests/browser/support/server';
 import { Viewer } from '../../tests/browser/support/viewer';
+import { addStyle } from './style';
 import { compress } from './webp';
 
 const kFolder = fileURLToPath(new URL('../viewer/scenes/', import.meta.url));
@@ -26,7 +27,7 @@ await server.start();
 const observer = await Observer.join(server.url);
 await observer.request('control.pause', {});
 const viewer = await Viewer.open(server.url, { viewport: kSize });
-await viewer.page.addStyleTag({ content: kOnlyPicture });
+await addStyle(viewer.page, kOnlyPicture);
 try {
   const chosen = process.argv.slice(2).filter((word) => !word.includes('/') && word !== '--');
   const { scenes } = await observer.request('scene.list', {});
@@ -39,7 +40,8 @@ try {
     await viewer.untilScene(name);
     await viewer.untilTick(kSeconds * 50);
     const picture = await viewer.picture();
-    const base64 = await viewer.page.evaluate(compress, [picture, kMostBytes] as const);
+    const blank = await viewer.blankPage();
+    const base64 = await blank.evaluate(compress, [picture, kMostBytes] as const);
     writeFileSync(`${kFolder}${name}.webp`, Buffer.from(base64, 'base64'));
   }
 } finally {

@@ -10,6 +10,7 @@ import { Observer } from '../../tests/browser/support/observer';
 import { Server } from '../../tests/browser/support/server';
 import { Viewer } from '../../tests/browser/support/viewer';
 import type { Look } from '../../tests/browser/support/viewer';
+import { addStyle } from './style';
 import { compress } from './webp';
 
 const kFolder = fileURLToPath(new URL('../pictures/', import.meta.url));
@@ -111,7 +112,7 @@ async function take(picture: Picture, server: Server, observer: Observer): Promi
   try {
     await viewer.untilTick(ticks, ticks);
     await act?.(viewer, observer);
-    await viewer.page.addStyleTag({ content: '#hint { display: none; }' });
+    await addStyle(viewer.page, '#hint { display: none; }');
     await viewer.page.waitForTimeout(1500); // a worker computes surfaces
     const png = await viewer.page.screenshot();
     const page = await viewer.blankPage();

@@ -173,12 +173,66 @@ TEST_F(HttpSite, EveryAnswerHasTheSecurityHeaders) {
     const HttpResponse reply = site({"GET", target});
     EXPECT_EQ(header(reply, "X-Content-Type-Options"), "nosniff") << target;
     EXPECT_EQ(header(reply, "Referrer-Policy"), "no-referrer") << target;
-    for (const char* part :
-         {"default-src 'self'", "worker-src 'self' blob:", "connect-src 'self' ws: wss:",
-          "style-src 'self' 'unsafe-inline'", "img-src 'self' data: blob:"}) {
-      EXPECT_THAT(header(reply, "Content-Security-Policy"), HasSubstr(part)) << target;
+    EXPECT_EQ(header(reply, "Cross-Origin-Resource-Policy"), "same-origin") << target;
+    const std::string policy = header(reply, "Content-Security-Policy");
+    for (const char* part : {"default-src 'none'", "script-src 'self'", "style-src 'self'",
+                             "base-uri 'none'", "form-action 'none'", "frame-ancestors 'self'"}) {
+      EXPECT_THAT(policy, HasSubstr(part)) << target;
     }
+    EXPECT_EQ(policy.find("unsafe"), std::string::npos) << target;
   }
+}
+
+TEST_F(HttpSite, SendsTheEncodingThatTheClientPrefers) {
+  folder.write("dist/assets/main.js", "the text itself");
+  folder.write("dist/assets/main.js.br", "brotli");
+  folder.write("dist/assets/main.js.gz", "gzipped");
+  folder.write("dist/alone.gz", "a file without a plain one");
+  const HttpHandler files = make_site(folder.path() / "dist");
+  struct Case {
+    const char* accepted;
+    const char* encoding;  // empty: identity
+    const char* body;
+  };
+  for (const Case& one :
+       {Case{"", "", "the text itself"}, Case{"gzip, deflate, br, zstd", "br", "brotli"},
+        Case{"gzip", "gzip", "gzipped"}, Case{"br;q=0, gzip;q=0.1", "gzip", "gzipped"},
+        Case{"identity, br;q=0.5", "", "the text itself"}, Case{"*", "br", "brotli"},
+        Case{"identity;q=0", "", "the text itself"}}) {
+    const HttpResponse reply = files({"GET", "/assets/main.js", one.accepted});
+    EXPECT_EQ(reply.status, 200) << one.accepted;
+    EXPECT_EQ(reply.body, one.body) << one.accepted;
+    EXPECT_EQ(header(reply, "Content-Encoding"), one.encoding) << one.accepted;
+    EXPECT_EQ(header(reply, "Vary"), "Accept-Encoding");
+    EXPECT_EQ(reply.content_type, "text/javascript; charset=utf-8");
+  }
+  EXPECT_EQ(files({"GET", "/assets/main.js.br"}).status, 404);
+  EXPECT_EQ(files({"GET", "/alone.gz"}).status, 200);
+  EXPECT_EQ(header(files({"GET", "/favicon.svg", "br"}), "Vary"), "");
+}
+
+TEST_F(HttpSite, AnUnchangedFileIsNotSentAgain) {
+  folder.write("dist/assets/main.js", "the text itself");
+  folder.write("dist/assets/main.js.br", "brotli");
+  const HttpHandler files = make_site(folder.path() / "dist");
+  const std::string plain = header(files({"GET", "/assets/main.js"}), "ETag");
+  const std::string brotli = header(files({"GET", "/assets/main.js", "br"}), "ETag");
+  EXPECT_NE(plain, brotli) << "a strong tag differs for each encoding";
+  EXPECT_THAT(plain, testing::MatchesRegex("\"[0-9a-f]{32}\""));
+  for (const std::string& tags : {brotli, "\"x\", " + brotli, "W/" + brotli, std::string("*")}) {
+    const HttpResponse reply = files({"GET", "/assets/main.js", "br", tags});
+    EXPECT_EQ(reply.status, 304) << tags;
+    EXPECT_EQ(reply.body, "");
+    EXPECT_EQ(header(reply, "ETag"), brotli);
+    EXPECT_EQ(header(reply, "Vary"), "Accept-Encoding");
+    EXPECT_EQ(header(reply, "Cache-Control"), "public, max-age=31536000, immutable");
+  }
+  for (const std::string& tags : {plain, std::string("x"), brotli.substr(1)}) {
+    EXPECT_EQ(files({"GET", "/assets/main.js", "br", tags}).status, 200) << tags;
+  }
+  folder.write("dist/index.html", "<title>new</title>");
+  const HttpHandler rebuilt = make_site(folder.path() / "dist");
+  EXPECT_EQ(rebuilt({"GET", "/", "", header(files({"GET", "/"}), "ETag")}).status, 200);
 }
 
 TEST_F(HttpSite, ReadyIsWhoTakesNewSessions) {
