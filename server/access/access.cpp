@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "server/storage/token_store.h"
+#include "server/support/header_text.h"
 
 namespace vat {
 namespace {
@@ -17,6 +18,17 @@ Role read_role(const std::string& name) {
 }
 
 }  // namespace
+
+bool may_read_metrics(const AccessSettings& settings, std::string_view authorization) {
+  if (settings.mode == AccessMode::open && !settings.metrics) return true;
+  constexpr std::string_view kScheme = "Bearer ";
+  if (!equal_ignoring_case(authorization.substr(0, kScheme.size()), kScheme)) return false;
+  const TokenHash token = hash_of_token(authorization.substr(kScheme.size()));
+  const auto is_given = [&](const std::optional<TokenHash>& valid) {
+    return valid && are_same(*valid, token);
+  };
+  return is_given(settings.metrics) || is_given(settings.admin);
+}
 
 void AccessTokens::keep_in(TokenStore& store) {
   const auto now = clock_.now();

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "server/access/role.h"
 #include "server/access/token.h"
@@ -25,6 +26,9 @@ inline constexpr std::array kNamesOf<AccessMode>{"open", "token"};
 struct AccessSettings {
   AccessMode mode = AccessMode::open;
   std::optional<TokenHash> admin;  ///< hash of the admin token; absent: no admin token
+  /// Hash of the token for the metrics. Absent: only the admin token is valid for them, or none is
+  /// needed in mode open.
+  std::optional<TokenHash> metrics;
   /// Time limit for sending the token. The connection is closed afterwards.
   std::chrono::milliseconds enter_time{10'000};
   std::chrono::milliseconds refusal_delay{1000};  ///< delay of the reply to a wrong token
@@ -32,6 +36,9 @@ struct AccessSettings {
   std::size_t max_wrong_tokens = 3;
   std::chrono::seconds ticket_time{60};  ///< validity period of a ticket
 };
+
+/// Returns whether a request with this header Authorization ("Bearer TOKEN") may read the metrics.
+bool may_read_metrics(const AccessSettings& settings, std::string_view authorization);
 
 /// Access rights of a connection.
 struct Grant {

@@ -55,7 +55,8 @@ constexpr const char* kServeFooter =
 or a member of the configuration file ("max_connections"). Variables override the file, and options
 override both.
 
-When the server is ready, it prints one line with its URL. All other output goes to standard error.
+When the server is ready, it prints a line with its URL. If it has generated an admin token, it
+prints the admin link before. All other output goes to standard error.
 SIGINT ends the server cleanly. SIGTERM also does, after clients had --drain-seconds to leave. A
 second signal ends the server immediately.
 
@@ -190,6 +191,10 @@ int serve(const ServeSettings& options, const ServeAccess& access, const Catalog
   const auto transport = make_websocket_transport(
       transport_settings(options, sessions), sessions,
       with_downloads(make_http_site(std::move(viewer), {[&] { return sessions.metrics(); },
+                                                        [&](std::string_view authorization) {
+                                                          return may_read_metrics(settings.access,
+                                                                                  authorization);
+                                                        },
                                                         [&] { return phase_of(phase, sessions); },
                                                         version_json(settings)}),
                      sessions.downloads(), clock));
@@ -198,6 +203,7 @@ int serve(const ServeSettings& options, const ServeAccess& access, const Catalog
   const std::string url = viewer_url(options, port);
   tell_access(options, access, url);
   phase = ServerPhase::ready;
+  // The last line, because a reader may close its end of the pipe after it.
   std::cout << "vat is at " << url << " (Ctrl-C stops it)" << std::endl;
   const std::chrono::milliseconds drain_time = stop_signal.wait();
   phase = ServerPhase::draining;

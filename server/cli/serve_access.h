@@ -17,7 +17,8 @@ struct ServeAccess {
 /// Returns the access settings. Returns an error if the token file cannot be read or a token is too
 /// short.
 Result<ServeAccess> serve_access(const ServeSettings& settings);
-/// Prints access information for the operator. `url` is the address of the viewer.
+/// Logs a warning if access is open to other machines. Prints the link of a generated admin token
+/// to standard output. `url` is the address of the viewer.
 void tell_access(const ServeSettings& settings, const ServeAccess& access, const std::string& url);
 
 }  // namespace vat

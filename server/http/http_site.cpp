@@ -88,6 +88,13 @@ HttpResponse readiness(ServerPhase phase) {
   return {phase == ServerPhase::ready ? 200 : 503, kJson, body, {}};
 }
 
+HttpResponse metrics_response(const SiteSources& sources, std::string_view authorization) {
+  if (sources.may_read_metrics(authorization)) return {200, kPrometheusText, sources.metrics(), {}};
+  HttpResponse response = text(401, "The metrics need a token: Authorization: Bearer TOKEN.\n");
+  response.headers.emplace_back("WWW-Authenticate", "Bearer");
+  return response;
+}
+
 HttpResponse answer(const StaticFiles& viewer, const SiteSources& sources,
                     const HttpRequest& request) {
   if (request.method != "GET" && request.method != "HEAD") {
@@ -100,7 +107,7 @@ HttpResponse answer(const StaticFiles& viewer, const SiteSources& sources,
   if (*path == "/healthz") return {200, kJson, "{\"status\":\"ok\"}\n", {}};
   if (*path == "/readyz") return readiness(sources.phase());
   if (*path == "/version") return {200, kJson, sources.version + '\n', {}};
-  if (*path == "/metrics") return {200, kPrometheusText, sources.metrics(), {}};
+  if (*path == "/metrics") return metrics_response(sources, request.authorization);
   return viewer_file(viewer, *path, request);
 }
 

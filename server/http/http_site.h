@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 
 #include "server/http/static_files.h"
 #include "server/operations/server_phase.h"
@@ -12,6 +13,8 @@ namespace vat {
 /// Sources of the responses about the server.
 struct SiteSources {
   std::function<std::string()> metrics;  ///< returns the text of "/metrics"
+  /// Returns whether a request with this header Authorization may read "/metrics".
+  std::function<bool(std::string_view authorization)> may_read_metrics;
   std::function<ServerPhase()> phase;
   std::string version;  ///< JSON text of "/version"
 };
@@ -21,7 +24,8 @@ struct SiteSources {
 ///   for If-None-Match. Without a viewer, "/" describes how to build it.
 /// - "/healthz": 200 while the process runs.
 /// - "/readyz": 200 if the server admits sessions, 503 while the server starts, recovers or drains.
-/// - "/version" and "/metrics".
+/// - "/version".
+/// - "/metrics": 401 if the request may not read them.
 HttpHandler make_http_site(StaticFiles viewer, SiteSources sources);
 
 }  // namespace vat

@@ -114,10 +114,13 @@ std::vector<Setting> access_group(ServeSettings& s) {
   return {
       word_setting("access", s.access, {"auto", "open", "token"},
                    "Access control: open: all clients; token: clients with a token; auto: open if "
-                   "the host is 127.0.0.1 or ::1, otherwise token"),
+                   "the host is 127.0.0.1 or ::1 and neither public_name nor trusted_proxy is set, "
+                   "otherwise token"),
       text_setting(
           "admin_token_file", s.admin_token_file, "FILE",
           "File whose first line is the admin token; replaces the variable VAT_ADMIN_TOKEN"),
+      text_setting("metrics_token_file", s.metrics_token_file, "FILE",
+                   "File whose first line is a token that can only read /metrics"),
   };
 }
 

@@ -30,7 +30,8 @@ struct ServeSettings {
   std::string log_level = "info";
   std::string log_format = "text";  ///< "text" or "json"
   std::string access = "auto";      ///< "auto", "open" or "token"
-  std::string admin_token_file;     ///< empty: no admin token
+  std::string admin_token_file;     ///< empty: no file
+  std::string metrics_token_file;   ///< empty: no file
   ServerLimits limits;
   std::chrono::milliseconds drain_time{0};
   std::string data = "none";  ///< folder for stored sessions, or "none"

@@ -275,7 +275,7 @@ class ServeAccessTest : public testing::Test {
   ServeSettings settings;
 };
 
-TEST_F(ServeAccessTest, IsOpenOnTheMachinesOwnAddressesOnly) {
+TEST_F(ServeAccessTest, IsOpenOnlyIfAllClientsAreOnThisMachine) {
   for (const char* host : {"127.0.0.1", "127.3.2.1", "::1"}) {
     settings.host = host;
     EXPECT_EQ(made().settings.mode, AccessMode::open) << host;
@@ -284,6 +284,12 @@ TEST_F(ServeAccessTest, IsOpenOnTheMachinesOwnAddressesOnly) {
     settings.host = host;
     EXPECT_EQ(made().settings.mode, AccessMode::token) << host;
   }
+  settings.host = "127.0.0.1";
+  settings.public_name = {"vat.example"};
+  EXPECT_EQ(made().settings.mode, AccessMode::token);
+  settings.public_name.clear();
+  settings.trusted_proxy = {"127.0.0.1"};
+  EXPECT_EQ(made().settings.mode, AccessMode::token);
   settings.access = "open";
   EXPECT_EQ(made().settings.mode, AccessMode::open);
   settings.host = "127.0.0.1";

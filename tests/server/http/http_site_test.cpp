@@ -91,9 +91,10 @@ class HttpSite : public testing::Test {
   HttpHandler make_site(const fs::path& dist) {
     Result<StaticFiles> files = StaticFiles::read(dist);
     EXPECT_TRUE(files.ok());
-    return make_http_site(
-        std::move(files).value(),
-        {[] { return "vat_threads 4\n"; }, [this] { return phase; }, R"({"version":"1.2.3"})"});
+    return make_http_site(std::move(files).value(),
+                          {[] { return "vat_threads 4\n"; },
+                           [](std::string_view authorization) { return authorization != "wrong"; },
+                           [this] { return phase; }, R"({"version":"1.2.3"})"});
   }
 
   const TemporaryFolder folder;
@@ -181,6 +182,17 @@ TEST_F(HttpSite, EveryAnswerHasTheSecurityHeaders) {
     }
     EXPECT_EQ(policy.find("unsafe"), std::string::npos) << target;
   }
+}
+
+TEST_F(HttpSite, MetricsNeedAuthorisation) {
+  for (const char* method : {"GET", "HEAD"}) {
+    EXPECT_EQ(site({method, "/metrics", "", "", "right"}).status, 200);
+    const HttpResponse refused = site({method, "/metrics", "", "", "wrong"});
+    EXPECT_EQ(refused.status, 401);
+    EXPECT_EQ(header(refused, "WWW-Authenticate"), "Bearer");
+    EXPECT_EQ(refused.body.find("vat_threads"), std::string::npos);
+  }
+  EXPECT_EQ(site({"GET", "/healthz", "", "", "wrong"}).status, 200);
 }
 
 TEST_F(HttpSite, SendsTheEncodingThatTheClientPrefers) {
@@ -286,7 +298,8 @@ class ServedSite : public TransportTest {};
 // Runs the health check command of the image over a real socket.
 TEST_F(ServedSite, PassesTheHealthCheckOfTheImage) {
   http_handler = make_http_site(StaticFiles::read("/none").value(),
-                                {[] { return ""; }, [] { return ServerPhase::ready; }, "{}"});
+                                {[] { return ""; }, [](std::string_view) { return true; },
+                                 [] { return ServerPhase::ready; }, "{}"});
   start();
   std::ifstream file(VAT_SOURCE_DIR "/docker/Dockerfile");
   std::ostringstream text;
