@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "protocol/scene/scene_json.h"
+#include "server/cli/certificate_watch.h"
 #include "server/cli/common/command.h"
 #include "server/cli/common/scene_argument.h"
 #include "server/cli/open_files.h"
@@ -58,7 +59,7 @@ override both.
 When the server is ready, it prints a line with its URL. If it has generated an admin token, it
 prints the admin link before. All other output goes to standard error.
 SIGINT ends the server cleanly. SIGTERM also does, after clients had --drain-seconds to leave. A
-second signal ends the server immediately.
+second signal ends the server immediately. With TLS, SIGHUP reads the certificate again.
 
 Exit codes: 0 stopped by a signal, 1 invalid scene or configuration file, unreadable folder, data
 that cannot be used or port in use, 2 wrong usage, or a variable with a bad value.)";
@@ -199,6 +200,11 @@ int serve(const ServeSettings& options, const ServeAccess& access, const Catalog
                                                         version_json(settings)}),
                      sessions.downloads(), clock));
   raise_file_limit(settings.limits.max_connections);
+  std::optional<CertificateWatch> certificate_watch;
+  if (!options.tls_certificate.empty()) {
+    certificate_watch.emplace(main_thread, std::vector{options.tls_certificate, options.tls_key},
+                              [&] { transport->read_certificate(); });
+  }
   const std::uint16_t port = transport->start();
   const std::string url = viewer_url(options, port);
   tell_access(options, access, url);
