@@ -79,9 +79,32 @@ void ReadBatch::answer(WaitingRead& waiting, Results& results) {
   }
   if (result.error) {
     waiting.reply.answer(*result.error);
+  } else if (const auto excess = find_full_queue(*waiting.reply.client(), bytes)) {
+    refuse_read(waiting.reply, *excess, environment_.metrics);
   } else {
     waiting.reply.answer_text({}, result.text);
   }
+}
+
+std::optional<RateExcess> ReadBatch::find_full_queue(ClientOutbox& client, std::size_t bytes) {
+  const ServerLimits& limits = environment_.limits;
+  const std::size_t maximum = limits.max_control_queue_bytes;
+  const auto [entry, is_first] = queued_.try_emplace(&client, 0);
+  std::size_t& queued = entry->second;
+  if (is_first) {
+    QueueMemory memory;
+    client.add_queue(memory);
+    queued = memory.bytes();
+  }
+  const std::size_t cost = bytes + ControlQueue::kMessageCost;
+  // The queue permits longer messages than its limit, but few of them.
+  if (queued + (cost > maximum ? 0 : cost) > maximum) {
+    const auto queue_bytes = static_cast<double>(queued);
+    return RateExcess{"control_queue_bytes", static_cast<double>(maximum),
+                      TokenBucket::Seconds(queue_bytes / limits.max_read_bytes_per_second)};
+  }
+  queued += cost;
+  return {};
 }
 
 ReadBatch::Result ReadBatch::compute(const WaitingRead& waiting) {

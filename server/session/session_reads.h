@@ -41,12 +41,16 @@ class ReadBatch {
   };
   using Results = std::map<std::string, Result>;  // by WaitingRead::key
   void answer(WaitingRead& waiting, Results& results);
+  /// Returns the limit of the client's queue if a result of this size must not be sent now.
+  std::optional<RateExcess> find_full_queue(ClientOutbox& client, std::size_t bytes);
   Result compute(const WaitingRead& waiting);
 
   std::vector<WaitingRead> reads_;
   const std::unique_ptr<SessionView> view_;
   const std::shared_ptr<ReadBudget> budget_;
   const SessionEnvironment& environment_;
+  // Messages that waited for each client at its first result, and the results since then [bytes].
+  std::map<const ClientOutbox*, std::size_t> queued_;
 };
 
 /// Reads of a session that wait for the read thread. At most one batch of a session is computed at

@@ -140,6 +140,35 @@ TEST_F(SessionReadsTest, OfAllClientsHaveABudgetToo) {
   EXPECT_EQ(error.at("data").at("limit"), "session_read_bytes_per_second");
 }
 
+// A client that sends reads quickly must not fill its queue by their results.
+TEST_F(SessionReadsTest, AreRefusedIfTheirResultsWouldFillTheQueueOfTheClient) {
+  environment.limits.max_read_bytes_per_second = 1e8;
+  environment.limits.max_session_read_bytes_per_second = 1e8;
+  const std::size_t maximum = environment.limits.max_control_queue_bytes;
+  for (const std::size_t bytes : {maximum / 3, maximum + 1}) {
+    SessionReads reads(environment.shared);
+    const Reader slow = connect();
+    const Reader other = connect();
+    slow.connection->stall(true);
+    for (int i = 0; i < 5; ++i) add(reads, slow, "same", bytes);
+    add(reads, other, "same", bytes);
+    run_all(reads);
+    EXPECT_FALSE(slow.connection->close_code().has_value()) << bytes;
+    const auto texts = slow.connection->texts();
+    ASSERT_EQ(texts.size(), 5U);
+    EXPECT_TRUE(texts.front().contains("result"));
+    EXPECT_TRUE(other.connection->texts().at(0).contains("result"));
+    const Json error = texts.back().at("error");
+    EXPECT_EQ(error.at("code"), 1009);
+    EXPECT_EQ(error.at("data").at("limit"), "control_queue_bytes");
+    EXPECT_GT(error.at("data").at("retry_after"), 0);
+    slow.connection->stall(false);
+    add(reads, slow, "same", bytes);
+    run_all(reads);
+    EXPECT_TRUE(slow.connection->texts().back().contains("result"));
+  }
+}
+
 TEST_F(SessionReadsTest, ThatFailAreAnsweredEach) {
   SessionReads reads(environment.shared);
   const Reader a = connect();
