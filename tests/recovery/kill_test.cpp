@@ -55,9 +55,10 @@ class Kill : public testing::Test {
     for (const auto& [session, name] : names) {
       for (int i = 0; i < kClientsPerSession; ++i) {
         const std::uint64_t own_name = ++last_client;
-        clients.emplace_back([&, port = server.port(), session = session, own_name] {
-          load_session(port, session, own_name, told);
-        });
+        clients.emplace_back(
+            [&, client = connect(server.port()), session = session, own_name]() mutable {
+              load_session(std::move(client), session, own_name, told);
+            });
       }
     }
     const auto answers = std::uniform_int_distribution<std::size_t>(0, 400)(chance);

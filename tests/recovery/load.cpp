@@ -4,24 +4,16 @@
 #include <utility>
 
 #include "protocol/json/json_reader.h"
-#include "tests/recovery/client.h"
 #include "tests/support/wait.h"
 
 namespace vat::test {
 namespace {
 
-/// Connects. Throws Gone if the connection fails.
-WaitingClient connect(std::uint16_t port) {
-  WaitingClient client(port);
-  if (!client.is_connected()) throw Gone("no connection");
-  return client;
-}
-
 /// The load of one client.
 class Load {
  public:
-  Load(std::uint16_t port, std::string session, std::uint64_t name, Told& told)
-      : client_(connect(port)), session_(std::move(session)), name_(name), told_(told) {}
+  Load(WaitingClient client, std::string session, std::uint64_t name, Told& told)
+      : client_(std::move(client)), session_(std::move(session)), name_(name), told_(told) {}
 
   void run() {
     const Json joined = client_.result("session.join", {{"session", session_}});
@@ -134,9 +126,16 @@ std::vector<std::string> Told::faults() const {
   return faults_;
 }
 
-void load_session(std::uint16_t port, const std::string& session, std::uint64_t name, Told& told) {
+WaitingClient connect(std::uint16_t port) {
+  WaitingClient client(port);
+  if (!client.is_connected()) throw Gone("no connection");
+  return client;
+}
+
+void load_session(WaitingClient client, const std::string& session, std::uint64_t name,
+                  Told& told) {
   try {
-    Load(port, session, name, told).run();
+    Load(std::move(client), session, name, told).run();
   } catch (const Gone&) {
     // expected when the server is killed
   } catch (const std::exception& fault) {

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/recovery/client.h"
+
 namespace vat::test {
 
 /// A state that a client received: its hash at a position of a session's history.
@@ -40,9 +42,12 @@ class Told {
   std::vector<std::string> faults_;
 };
 
-/// Joins a session of the server at `port` and sends commands, each after the reply to the previous
-/// one, until the connection ends. `name` is unique and makes the sent values unique.
-void load_session(std::uint16_t port, const std::string& session, std::uint64_t name, Told& told);
+/// Connects. Throws Gone if the connection fails.
+WaitingClient connect(std::uint16_t port);
+
+/// Joins a session and sends commands, each after the reply to the previous one, until the
+/// connection ends. `name` is unique and makes the sent values unique.
+void load_session(WaitingClient client, const std::string& session, std::uint64_t name, Told& told);
 
 /// Creates a session and returns its id. Throws if that fails.
 std::string create_session(std::uint16_t port, const std::string& name, const std::string& scene);

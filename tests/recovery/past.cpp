@@ -1,5 +1,7 @@
 #include "tests/recovery/past.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <limits>
 
@@ -53,7 +55,13 @@ std::map<std::uint64_t, std::set<std::string>> hashes_of(const StoredPast& past,
   note();
   for (std::size_t i = 1; i < past.log.size(); ++i) {
     run(past.log[i].position);
-    repeat_entry(core, past.log[i]);
+    try {
+      repeat_entry(core, past.log[i]);
+    } catch (const Diverged&) {
+      // If a kill ended the server between the storing of a last entry and its refusal, the log
+      // does not contain the refusal; see SessionRecovery.
+      EXPECT_EQ(past.log[i].position, past.log.back().position);
+    }
     note();
   }
   run(past.position);
