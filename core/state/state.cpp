@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/state/body_state.h"
 #include "core/state/rigid_motion.h"
 #include "core/support/check.h"
 

@@ -8,7 +8,7 @@
 namespace vat {
 namespace {
 
-constexpr std::size_t kMaxReasonBytes = 100;  // a close frame has at most 123
+constexpr std::size_t kMaxKickReasonBytes = 100;  // a close frame has at most 123
 constexpr std::size_t kMaxUses = 10'000;
 constexpr std::uint64_t kMaxExpirySeconds = 30 * 24 * 3600;
 constexpr std::uint64_t kUsualExpirySeconds = 24 * 3600;
@@ -93,7 +93,7 @@ SessionAction read_participant_set_role(ObjectReader& params, Errors&) {
 
 SessionAction read_participant_kick(ObjectReader& params, Errors&) {
   const ParticipantNumber number = read_participant(params);
-  const std::string reason = params.text("reason", kMaxReasonBytes, "kicked by the owner");
+  const std::string reason = params.text("reason", kMaxKickReasonBytes, "kicked by the owner");
   return [number, reason](SessionCore& core, Participant& caller) -> ActionResult {
     const auto other = find_other(core, caller, number);
     if (const auto* error = std::get_if<RpcError>(&other)) return *error;
