@@ -4,6 +4,7 @@
 #include "core/damping/damping_solve.h"
 #include "core/evaluation/force_model.h"
 #include "core/scene/numerics.h"
+#include "core/solid/elongation_limit.h"
 #include "core/solid/implicit_springs.h"
 #include "core/state/state.h"
 
@@ -15,6 +16,7 @@ struct IntegratorScratch {
   Configuration increment;  ///< weighted sum of the rates of a Runge-Kutta step
   DampingScratch damping;
   ImplicitSpringsScratch implicit_springs;
+  ElongationScratch elongation;
   ContactProjection projection;
 };
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "core/numerics/step_limits.h"
-#include "core/solid/elongation_limit.h"
 #include "core/solid/spring_changes.h"
+#include "core/state/controls.h"
 #include "core/state/kick_drift.h"
 #include "core/stepping/liquid_solver.h"
 #include "core/support/check.h"
@@ -147,7 +147,7 @@ void limit_springs(const StepArguments& step) {
   const ForceModel& f = step.force_model;
   if (f.model.limited_springs.empty()) return;
   f.enter("limit_elongation");
-  limit_elongation(f.model, f.runner, step.state.now, step.dt);
+  limit_elongation(f.model, f.runner, step.state.now, step.dt, step.scratch.elongation);
 }
 
 void drift_particles(const StepArguments& step) {
