@@ -314,6 +314,7 @@ std::shared_ptr<Model> compile_model(Scene scene, const std::vector<BodyId>& ids
   }
   compile_surface_tension(*model);
   add_springs(*model);
+  order_implicit_springs(*model);
   find_limited_springs(*model);
   add_cells(*model);
   add_rigid_bodies(*model);

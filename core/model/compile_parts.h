@@ -7,6 +7,9 @@ namespace vat {
 /// Adds the static springs of deformable bodies. The model must contain its bodies and particles.
 void add_springs(Model& model);
 
+/// Fills Model::implicit_places and ModelBody::spring_width. The model must contain its springs.
+void order_implicit_springs(Model& model);
+
 /// Adds the cells of deformable bodies with a bulk modulus.
 void add_cells(Model& model);
 

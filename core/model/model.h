@@ -41,6 +41,9 @@ struct ModelBody {
   IndexRange particles;
   Index rigid = 0;  ///< index among the rigid bodies; only for kind rigid
   Real mass = 0;
+  /// Greatest distance of two places (Model::implicit_places) that a spring joins. Only for bodies
+  /// with implicit springs that are narrow enough for BandFactor.
+  std::optional<Index> spring_width;
   std::uint64_t melts_at = kNever;            ///< first nominal step in which the body is liquid
   std::shared_ptr<const SampledBody> sample;  ///< null after forget_samples(); see sample_of()
   bool is_as_described = false;               ///< sample can be computed from the description
@@ -186,6 +189,9 @@ struct Model {
   SharedArray<Index> spring_begin;
   SharedArray<Index> spring_own_begin;
   SharedArray<SpringEnd> spring_ends;
+  /// Order in which the springs of each body join near places. Indexed from particle
+  /// implicit_begin.
+  SharedArray<Index> implicit_places;
   // Cells of deformable bodies. The corners at free particle i are [cell_begin[i],
   // cell_begin[i+1]).
   SharedArray<VolumeCell> cells;

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/model/model.h"
+#include "core/numerics/band_factor.h"
 #include "core/support/check.h"
 #include "core/support/parallel.h"
 
@@ -22,25 +24,33 @@ struct SpringSystemScratch {
   std::vector<Vec3> residual;   ///< impulses [N s]; zero for fixed particles
   std::vector<Vec3> change;     ///< change of velocities
   std::vector<Vec3> remaining;  ///< residual after the preceding iterations
+  std::vector<Vec3> preconditioned;
   std::vector<Vec3> direction;
   std::vector<Vec3> product;
   std::vector<Real> partial_sums;  ///< indexed by block
+  BandFactor factor;
+  std::vector<Vec3> ordered;  ///< by place in the order of the factor
 
   void resize(const Model& model);
 };
 
 /// Linear equations (M + slopes) change = residual for the velocities of one body with implicit
-/// springs. Slopes are equal at both ends, with opposite effects. Every iterate therefore conserves
-/// linear momentum. Angular momentum is also conserved if the slopes have no transverse part.
+/// springs. Slopes are equal at both ends, with opposite effects. Every solution therefore
+/// conserves linear momentum. Angular momentum is also conserved if the slopes have no transverse
+/// part.
 class SpringSystem {
  public:
-  SpringSystem(const Model& model, TaskRunner* runner, const IndexRange& particles,
+  SpringSystem(const Model& model, TaskRunner* runner, const ModelBody& body,
                SpringSystemScratch& scratch);
 
-  /// Solves by conjugate gradients with the preconditioner M. The solve ends when the M^-1 norm of
-  /// the residual is at most `tolerance` times its initial value, or after a limited number of
-  /// iterations.
+  /// Solves the equations by conjugate gradients, until the M^-1 norm of the residual is at most
+  /// `tolerance` times its initial value. The preconditioner is M. For a narrow body, it becomes
+  /// the Cholesky factor of M + slopes as soon as the iterations have cost as much as the factor.
+  /// It is kept while the slopes change, as long as the iterations remain few. If rounding limits
+  /// the accuracy, the solve ends after a limited number of iterations.
   void solve(Real tolerance);
+  /// From now on, the preconditioner is M. Returns false if it already was.
+  bool stop_factoring();
 
   /// Returns the number of passes over all springs of the body.
   std::uint64_t passes() const { return passes_; }
@@ -76,11 +86,21 @@ class SpringSystem {
 
  private:
   void multiply();
+  Real size_of_remaining();
+  void factor();
+  void precondition();
+  void apply_factor();
+  bool iterate(Real enough, int limit);
 
   const Model& model_;
   TaskRunner* runner_;
   IndexRange particles_;
+  std::optional<Index> width_;
   SpringSystemScratch& scratch_;
+  int factor_cost_ = 0;  ///< in iterations without a factor
+  int iterations_ = 0;   ///< without a factor
+  bool is_factored_ = false;
+  Real free_mass_ = 0;  ///< [kg]; 0 if a particle is fixed
   std::uint64_t passes_ = 0;
 };
 
