@@ -179,19 +179,20 @@ void turn_direction(const Equation& eq, Real share) {
   }
 }
 
-/// Conjugate gradients from w = 0, preconditioned with M.
-void iterate(const Equation& eq, Real error) {
+/// Conjugate gradients from w = 0, preconditioned with M. Returns the number of products.
+int iterate(const Equation& eq, Real error) {
   Real size = 0;
   for (int iteration = 0; iteration < kMaxDampingPasses; ++iteration) {
-    if (!(error > kTolerance * kTolerance * size)) return;
+    if (!(error > kTolerance * kTolerance * size)) return iteration;
     apply_damping(eq, eq.scratch.direction, eq.scratch.product);
     const Real curvature = curvature_along(eq);
-    if (!(curvature > 0)) return;  // too small for the precision of numbers
+    if (!(curvature > 0)) return iteration + 1;  // too small for the precision of numbers
     const DampingSums advance = advance_along(eq, error / curvature);
     turn_direction(eq, advance.error / error);
     error = advance.error;
     size = advance.size;
   }
+  return kMaxDampingPasses;
 }
 
 Oscillation greater(const Oscillation& a, const Oscillation& b) {
@@ -284,8 +285,10 @@ void solve_damping(const ForceModel& f, const Configuration& from, Configuration
   }
   if (f.model.has_friction) scratch.friction_torque.resize(f.model.particle_count);
   find_inertias(eq);
-  iterate(eq, start(eq, forces,
-                    [&](std::size_t i) { return Vec3(from.velocity[i] - at.velocity[i]); }));
+  const int products = iterate(eq, start(eq, forces, [&](std::size_t i) {
+                                 return Vec3(from.velocity[i] - at.velocity[i]);
+                               }));
+  if (f.report != nullptr) f.report->iterations.damping += static_cast<std::uint64_t>(products);
   for (Index i = 0; i < f.model.free_count; ++i) {
     forces.particle[i] += scratch.force.particle[i];
   }

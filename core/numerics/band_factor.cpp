@@ -14,8 +14,11 @@ void BandFactor::clear(std::size_t rows, std::size_t width) {
   lower_.assign(size_ * height_, 0);
 }
 
-void BandFactor::add(std::size_t row, std::size_t column_of_block, const Mat3& block) {
-  if (row < column_of_block) std::swap(row, column_of_block);
+void BandFactor::add(std::size_t row, std::size_t column_of_block, Mat3 block) {
+  if (row < column_of_block) {
+    std::swap(row, column_of_block);
+    block.transposeInPlace();
+  }
   VAT_CHECK(3 * row < size_ && 3 * (row - column_of_block) < height_);
   for (std::size_t c = 0; c < 3; ++c) {
     const std::size_t j = 3 * column_of_block + c;

@@ -20,8 +20,9 @@ class BandFactor {
 
   /// Begins a matrix of `rows` block rows that is zero. `width` must be at most kMaxWidth.
   void clear(std::size_t rows, std::size_t width);
-  /// Adds a symmetric block at (row, column) and, if row and column differ, at (column, row).
-  void add(std::size_t row, std::size_t column, const Mat3& block);
+  /// Adds a block at (row, column) and, if row and column differ, its transpose at (column, row). A
+  /// block on the diagonal must be symmetric.
+  void add(std::size_t row, std::size_t column, Mat3 block);
   /// Replaces the matrix by its factor. Returns false if rounding makes a pivot zero or negative.
   /// The factor is undefined in this case.
   bool factor();

@@ -136,15 +136,15 @@ void LimitSolve::extrapolate() {
 
 }  // namespace
 
-void limit_elongation(const Model& model, TaskRunner* runner, Configuration& at, Real dt,
-                      ElongationScratch& scratch) {
-  if (model.limited_springs.empty()) return;
+int limit_elongation(const Model& model, TaskRunner* runner, Configuration& at, Real dt,
+                     ElongationScratch& scratch) {
+  if (model.limited_springs.empty()) return 0;
   VAT_CHECK(dt > 0 && at.velocity.size() == model.particle_count);
   LimitSolve solve(model, runner, at, dt, scratch);
   solve.set_geometry();
-  for (int sweeps = 2; solve.sweep() && sweeps < kElongationSweeps; sweeps += 2) {
-    solve.extrapolate();
-  }
+  int sweeps = 2;
+  for (; solve.sweep() && sweeps < kElongationSweeps; sweeps += 2) solve.extrapolate();
+  return sweeps;
 }
 
 }  // namespace vat

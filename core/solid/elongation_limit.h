@@ -38,8 +38,10 @@ struct ElongationScratch {
 ///
 /// The limit is linear in the motion along the spring. A spring that rotates by a small angle w dt
 /// in the drift is elongated by (w dt)^2 / 2 of its length. The next step corrects this elongation.
-void limit_elongation(const Model& model, TaskRunner* runner, Configuration& configuration, Real dt,
-                      ElongationScratch& scratch);
+///
+/// Returns the number of sweeps.
+int limit_elongation(const Model& model, TaskRunner* runner, Configuration& configuration, Real dt,
+                     ElongationScratch& scratch);
 inline constexpr int kElongationSweeps = 100;
 inline constexpr Real kElongationTolerance = 1e-4;
 

@@ -42,7 +42,9 @@ class BodyDrift {
     find_pivot();
   }
   ~BodyDrift() {
-    if (report_ != nullptr) report_->particle_evaluations += system_.passes() * particles_.size();
+    if (report_ == nullptr) return;
+    report_->particle_evaluations += system_.passes() * particles_.size();
+    report_->iterations.springs += system_.passes();
   }
   BodyDrift(const BodyDrift&) = delete;
   BodyDrift& operator=(const BodyDrift&) = delete;

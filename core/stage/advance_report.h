@@ -25,6 +25,15 @@ template <>
 inline constexpr std::array kNamesOf<GuardEvent::Cause>{"non_finite", "outside_domain", "too_fast",
                                                         "too_many_pairs"};
 
+/// Iterations of the solves that iterate until a tolerance is reached, summed over the solves of
+/// all steps.
+struct IterationCounts {
+  std::uint64_t contacts = 0;    ///< sweeps over the projected contacts, of the slowest island
+  std::uint64_t damping = 0;     ///< products with the damping matrix
+  std::uint64_t springs = 0;     ///< passes over the implicit springs of a body
+  std::uint64_t elongation = 0;  ///< sweeps over the springs with limited elongation
+};
+
 /// The result of one call of advance().
 struct AdvanceReport {
   /// Maximum number of stored events: the first events and the last event. The number is limited
@@ -46,6 +55,7 @@ struct AdvanceReport {
   /// Number of evaluations of the forces on single particles, complete or partial. This number
   /// makes the cost of local control and implicit springs comparable with that of full evaluations.
   std::uint64_t particle_evaluations = 0;
+  IterationCounts iterations;
   bool bodies_changed = false;             ///< true if a body has melted
   std::vector<std::uint64_t> ended_grabs;  ///< ids of grabs with removed or melted particles
   bool failed = false;                     ///< true: the state is that before the call

@@ -147,7 +147,9 @@ void limit_springs(const StepArguments& step) {
   const ForceModel& f = step.force_model;
   if (f.model.limited_springs.empty()) return;
   f.enter("limit_elongation");
-  limit_elongation(f.model, f.runner, step.state.now, step.dt, step.scratch.elongation);
+  const int sweeps =
+      limit_elongation(f.model, f.runner, step.state.now, step.dt, step.scratch.elongation);
+  if (f.report != nullptr) f.report->iterations.elongation += static_cast<std::uint64_t>(sweeps);
 }
 
 void drift_particles(const StepArguments& step) {

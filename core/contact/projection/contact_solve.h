@@ -8,9 +8,20 @@
 
 #include "core/contact/projection/contact_constraint.h"
 #include "core/contact/projection/contact_islands.h"
+#include "core/contact/projection/contact_newton.h"
 #include "core/support/parallel.h"
 
 namespace vat {
+
+/// Buffers of ContactSolve::sweep().
+struct ContactNewtonScratch {
+  struct Block {
+    ContactNewton newton;
+    std::vector<Real> excess;
+  };
+  std::vector<Block> blocks;        ///< by block of islands
+  std::vector<Index> place_of_end;  ///< free particles, then rigid bodies
+};
 
 /// A solve for the impulses of contacts at a fixed geometry, and the velocities that the impulses
 /// change.
@@ -39,48 +50,88 @@ struct ContactSolve {
   /// resulting relative displacement of the ends in `dt`, in thresholds.
   Real apply_friction(ContactConstraint& contact);
 
-  /// Calls relax(contact) for the contacts of each island in order and in reverse order, until no
-  /// contact of the island changes. relax() returns the change of the contact in thresholds.
+  /// Relaxes the contacts of each island in order and in reverse order, until no contact of the
+  /// island changes. excess(contact) returns the separation speed above the required one [m/s].
   /// Islands are independent and may run on different threads. Returns whether the sweeps have
-  /// converged. The nonlinear conjugate gradient method of M. Silcowitz-Hansen, S. Niebe, K.
-  /// Erleben, The Visual Computer 26 (2010) 893, accelerates the convergence. In this method, the
-  /// change of a sweep is a gradient. While the gradients decrease, the next sweep starts at an
-  /// extrapolation of the last sweeps.
-  template <class Relax>
+  /// converged. If the sweeps of an island converge slowly, ContactNewton replaces some of them.
+  /// The nonlinear conjugate gradient method of M. Silcowitz-Hansen, S. Niebe, K. Erleben, The
+  /// Visual Computer 26 (2010) 893, accelerates the convergence. In this method, the change of a
+  /// sweep is a gradient. While the gradients decrease, the next sweep starts at an extrapolation
+  /// of the last sweeps.
+  template <class Excess>
   bool sweep(std::vector<ContactConstraint>& constraints, const ContactIslands& islands,
-             Relax&& relax) {
+             ContactNewtonScratch& scratch, Excess&& excess) {
     constexpr std::size_t kIslandsPerBlock = 8;
     // The maximum number of operations is about equal for few and many contacts.
     const std::size_t most =
         std::clamp<std::size_t>(10'000 / std::max<std::size_t>(constraints.size(), 1), 50, 1000);
-    std::atomic<bool> is_solved = true;
-    for_blocks<kIslandsPerBlock>(force_model.runner, islands.count(),
-                                 [&](std::size_t begin, std::size_t end) {
-                                   for (std::size_t island = begin; island < end; ++island) {
-                                     if (!sweep_island(constraints, islands[island], most, relax))
-                                       is_solved = false;
-                                   }
-                                 });
-    return is_solved;
+    std::atomic<std::size_t> greatest = 0;
+    scratch.place_of_end.resize(model().free_count + rigid.size());
+    scratch.blocks.resize((islands.count() + kIslandsPerBlock - 1) / kIslandsPerBlock);
+    for_blocks<kIslandsPerBlock>(
+        force_model.runner, islands.count(), [&](std::size_t begin, std::size_t end) {
+          for (std::size_t island = begin; island < end; ++island) {
+            raise(greatest, sweep_island(constraints, islands[island], most, scratch,
+                                         begin / kIslandsPerBlock, excess));
+          }
+        });
+    if (force_model.report != nullptr) {
+      force_model.report->iterations.contacts +=
+          2 * (greatest == kUnsolved ? most : greatest.load());
+    }
+    return greatest < kUnsolved;
   }
 
  private:
-  template <class Relax>
-  bool sweep_island(std::vector<ContactConstraint>& constraints, std::span<const Index> island,
-                    std::size_t most, Relax&& relax) {
+  static constexpr std::size_t kUnsolved = ~std::size_t{0};
+  static void raise(std::atomic<std::size_t>& greatest, std::size_t value) {
+    std::size_t known = greatest;
+    while (known < value && !greatest.compare_exchange_weak(known, value)) {
+    }
+  }
+  /// Returns the number of rounds, each forward and back, or kUnsolved.
+  template <class Excess>
+  std::size_t sweep_island(std::vector<ContactConstraint>& constraints,
+                           std::span<const Index> island, std::size_t most,
+                           ContactNewtonScratch& scratch, std::size_t block, Excess&& excess) {
     constexpr Real kTolerance = 1e-8;
+    constexpr std::size_t kFewRounds = 8;
+    constexpr int kMaxRuns = 2;
+    int runs = 0;
+    std::size_t next_newton = ContactNewton::kNever;
+    const auto relax = [&](ContactConstraint& contact) {
+      const Real wanted = contact.push - excess(contact) / contact.mobility;
+      const Real change = push(contact, std::max(Real{0}, wanted) - contact.push);
+      return std::max(change, apply_friction(contact));
+    };
+    ContactNewtonScratch::Block& own = scratch.blocks[block];
     Real last = 0;
-    for (std::size_t round = 0; round < most; ++round) {
+    std::size_t last_round = most;
+    for (std::size_t round = 1; round <= last_round; ++round) {
       Real change = 0;
       for (const Index c : island) constraints[c].gradient = -constraints[c].impulse();
       for (const Index c : island) change = std::max(change, relax(constraints[c]));
       for (const Index c : island | std::views::reverse) {
         change = std::max(change, relax(constraints[c]));
       }
-      if (change <= kTolerance) return true;
+      if (change <= kTolerance) return round;
+      if (round == kFewRounds) {
+        const std::size_t cost =
+            own.newton.prepare(*this, constraints, island, scratch.place_of_end);
+        next_newton = std::max(round, cost);
+      }
+      if (round == next_newton) {
+        next_newton = ++runs < kMaxRuns ? 2 * round : ContactNewton::kNever;
+        last_round = std::max(most, 2 * round);
+        own.excess.clear();
+        for (const Index c : island) own.excess.push_back(excess(constraints[c]));
+        own.newton.run(*this, constraints, island, own.excess, scratch.place_of_end);
+        last = 0;
+        continue;
+      }
       last = extrapolate(constraints, island, last);
     }
-    return false;
+    return kUnsolved;
   }
   Vec3 velocity(const ContactEnd& end) const;
   Real mobility(const ContactEnd& end, const Vec3& direction) const;

@@ -103,11 +103,9 @@ void ContactProjection::drift(const ForceModel& f, Configuration& now, Real time
   const Gaps gap{model, vat, now, start_, rigid_, predicted_, dt};
   islands_.find(model, constraints_);
   for (int round = 0; round < kMaxRounds; ++round) {
-    const bool is_solved = solve.sweep(constraints_, islands_, [&](ContactConstraint& contact) {
-      const Real wanted = contact.push - gap(contact) / (dt * contact.mobility);
-      const Real change = solve.push(contact, std::max(Real{0}, wanted) - contact.push);
-      return std::max(change, solve.apply_friction(contact));
-    });
+    const bool is_solved =
+        solve.sweep(constraints_, islands_, newton_,
+                    [&](const ContactConstraint& contact) { return gap(contact) / dt; });
     predict(f, now, dt);
     if (!is_solved) break;
     const bool is_met = std::ranges::all_of(constraints_, [&](const ContactConstraint& contact) {
@@ -144,11 +142,8 @@ void ContactProjection::finish(const ForceModel& f, Configuration& now, Real tim
     contact.parting = bounces ? -contact.restitution * contact.approach : 0;
   }
   islands_.find(model, constraints_);
-  solve.sweep(constraints_, islands_, [&](ContactConstraint& contact) {
-    const Real speed = solve.slip(contact).dot(contact.normal);
-    const Real wanted = contact.push + (contact.parting - speed) / contact.mobility;
-    const Real change = solve.push(contact, std::max(Real{0}, wanted) - contact.push);
-    return std::max(change, solve.apply_friction(contact));
+  solve.sweep(constraints_, islands_, newton_, [&](const ContactConstraint& contact) {
+    return solve.slip(contact).dot(contact.normal) - contact.parting;
   });
   record(constraints_, dt, now.contacts);
 }

@@ -4,6 +4,7 @@
 
 #include "core/contact/projection/contact_constraint.h"
 #include "core/contact/projection/contact_islands.h"
+#include "core/contact/projection/contact_solve.h"
 
 namespace vat {
 
@@ -46,6 +47,7 @@ class ContactProjection {
   ConstraintSearch search_;
   std::vector<ContactConstraint> constraints_;
   ContactIslands islands_;
+  ContactNewtonScratch newton_;
   std::vector<RigidMotion> rigid_;      ///< present motion, changed by the impulses
   std::vector<RigidMotion> predicted_;  ///< motion of the predicted poses
   Configuration start_;                 ///< start of the step; impulses change the velocities

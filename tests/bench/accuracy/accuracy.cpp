@@ -10,6 +10,7 @@
 #include "server/support/task_runner.h"
 #include "tests/bench/accuracy/accuracy_report.h"
 #include "tests/bench/accuracy/control_report.h"
+#include "tests/bench/accuracy/growth_report.h"
 #include "tests/bench/accuracy/law_report.h"
 #include "tests/bench/accuracy/solver_report.h"
 #include "tests/bench/accuracy/tolerance_report.h"
@@ -55,13 +56,21 @@ Status tolerances(const Options& options, TaskRunner* /*runner*/) {
   return write_tolerances(points, options.output);
 }
 
+Status growth(const Options& options, TaskRunner* /*runner*/) {
+  std::cout << "growth: iterations of the solves of a step against the size" << std::endl;
+  const auto results = options.quick ? sweep_growth(20, 1) : sweep_growth(100, 5);
+  std::cout << to_markdown(growth_table(results)) << std::endl;
+  return write_growth(results, options.output);
+}
+
 /// A comparison that is not a sweep of integrators and steps.
 struct Comparison {
   const char* name;
   Status (*run)(const Options& options, TaskRunner* runner);
 };
 
-constexpr Comparison kComparisons[] = {{"solvers", &solvers}, {"tolerances", &tolerances}};
+constexpr Comparison kComparisons[] = {
+    {"solvers", &solvers}, {"tolerances", &tolerances}, {"growth", &growth}};
 
 int accuracy(const Options& options) {
   const std::vector<ProblemEntry>& problems = all_problems();

@@ -167,6 +167,16 @@ Table tolerances_table(const Json& tolerances) {
   return table;
 }
 
+Table growth_rows_table(const Json& growth) {
+  Table table{{"solve", "size", "value", "iterations per step"}, {}};
+  for (const Json& row : growth) {
+    table.rows.push_back({cell_text(row, "solve"), cell_text(row, "size"),
+                          row.at("value").get<std::uint64_t>(),
+                          row.at("iterations per step").get<Real>()});
+  }
+  return table;
+}
+
 Table counts_table(const Json& stability) {
   Table table{{"part", "scenes", "not finite", "aborts", "outside", "guard events", "retries",
                "wall stops", "stopped", "refused", "faults"},

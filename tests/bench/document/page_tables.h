@@ -31,6 +31,8 @@ Table laws_table(const Json& laws);
 Table solvers_table(const Json& solvers);
 /// Density error and iterations by tolerance. Times are in the plot only.
 Table tolerances_table(const Json& tolerances);
+/// Iterations of the solves of a step against the size of the problem.
+Table growth_rows_table(const Json& growth);
 
 /// Returns all columns except the seconds.
 Table counts_table(const Json& stability);
