@@ -181,6 +181,7 @@ int serve(const ServeSettings& options, const ServeAccess& access, const Catalog
     settings.data_folder = options.data;
   }
   settings.storage = options.storage;
+  if (options.durability == "process") settings.storage.durability = Durability::process;
   settings.end = [&](auto drain_time) { return stop_signal.request(drain_time); };
   SystemClock clock;
   SessionServer sessions(catalogue, settings, clock);
@@ -191,13 +192,13 @@ int serve(const ServeSettings& options, const ServeAccess& access, const Catalog
 
   const auto transport = make_websocket_transport(
       transport_settings(options, sessions), sessions,
-      with_downloads(make_http_site(std::move(viewer), {[&] { return sessions.metrics(); },
-                                                        [&](std::string_view authorization) {
-                                                          return may_read_metrics(settings.access,
-                                                                                  authorization);
-                                                        },
-                                                        [&] { return phase_of(phase, sessions); },
-                                                        version_json(settings)}),
+      with_downloads(make_http_site(std::move(viewer),
+                                    {[&] { return sessions.metrics(); },
+                                     [&](std::string_view authorization) {
+                                       return may_read_metrics(settings.access, authorization);
+                                     },
+                                     [&] { return phase_of(phase, sessions); },
+                                     [&] { return sessions.health(); }, version_json(settings)}),
                      sessions.downloads(), clock));
   raise_file_limit(settings.limits.max_connections);
   std::optional<CertificateWatch> certificate_watch;

@@ -11,7 +11,7 @@
 #include "server/access/access.h"
 #include "server/messages/limits.h"
 #include "server/operations/memory_limit.h"
-#include "server/storage/sqlite/storage_limits.h"
+#include "server/storage/sqlite/storage_settings.h"
 
 namespace vat {
 
@@ -31,7 +31,7 @@ struct ServerSettings {
   std::size_t threads = 0;  ///< threads for sessions; 0: number of cores
   AccessSettings access;
   std::string data_folder;  ///< folder for stored sessions; empty: sessions are in memory only
-  StorageLimits storage;
+  StorageSettings storage;
   /// Returns the memory of the process, for ServerLimits::max_memory.
   MemoryLimit::Measure measure_memory = process_memory;
   /// Ends the server after the given time for clients, or after the default time. Returns the time.

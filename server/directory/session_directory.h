@@ -78,6 +78,8 @@ class SessionDirectory {
 
   /// Returns the metrics in the text format of Prometheus.
   std::string metrics();
+  /// Returns the state of the storage, for /healthz.
+  Json health() const;
   /// Refuses new connections, sessions and joins, and sends server.draining. Returns after `time`,
   /// or as soon as all clients have left.
   void drain(std::chrono::milliseconds time);

@@ -114,6 +114,16 @@ std::string SessionDirectory::metrics() {
   return resources_.metrics.to_text(gauges);
 }
 
+Json SessionDirectory::health() const {
+  Json health{{"status", "ok"}, {"durability", "none"}};
+  if (resources_.storage == nullptr) return health;
+  health["durability"] = to_string(resources_.settings.storage.durability);
+  const auto failing = resources_.storage->counts().failing;
+  health["storage"] = failing ? "failing" : "ok";
+  if (failing) health["reason"] = to_string(*failing);
+  return health;
+}
+
 void SessionDirectory::drain(std::chrono::milliseconds time) {
   const std::chrono::duration<double> seconds = time;
   const std::string event = write_event("server.draining", {{"seconds", seconds.count()}});

@@ -19,6 +19,10 @@ std::size_t bytes_of(std::span<const LogEntry> entries) {
   return bytes;
 }
 
+bool is_log_full(const Storage& storage, std::size_t log_bytes) {
+  return log_bytes > storage.settings().log_bytes;
+}
+
 }  // namespace
 
 bool CheckpointPace::is_due(Seconds cost) const {
@@ -29,54 +33,68 @@ SessionLog::SessionLog(Storage& storage, std::uint64_t session, const Place& pla
     : storage_(storage),
       session_(session),
       last_(place.last),
-      pace_(storage.limits().checkpoint_after),
+      pace_(storage.settings().checkpoint_after),
       stored_position_(place.position),
-      stored_last_(place.last),
-      needs_checkpoint_(place.needs_checkpoint) {
+      stored_last_(place.last) {
+  writing_->needs_checkpoint = place.needs_checkpoint;
   writing_->log_bytes = storage.sessions().log_bytes(session);
   storage.checkpoints().drop_hashes(session, place.position);
 }
 
-template <class Write>
-void SessionLog::write_now(const Write& write) {
-  try {
-    write();
-  } catch (const StorageError&) {
-    storage_.count_failure();
-    throw;
-  }
+void SessionLog::number(std::span<LogEntry> entries) const {
+  for (std::size_t i = 0; i < entries.size(); ++i) entries[i].sequence = last_ + 1 + i;
 }
 
-void SessionLog::append(std::span<LogEntry> entries) {
-  VAT_CHECK(!entries.empty());
-  for (std::size_t i = 0; i < entries.size(); ++i) entries[i].sequence = last_ + 1 + i;
-  write_now([&] { storage_.sessions().append(session_, entries); });
-  last_ += entries.size();
+void SessionLog::append(std::vector<LogEntry> entries, Journal::Done done) {
+  VAT_CHECK(!entries.empty() && entries.front().sequence == last_ + 1 && done != nullptr);
   writing_->log_bytes += bytes_of(entries);
+  auto write = [&storage = storage_, session = session_, entries = std::move(entries)] {
+    storage.sessions().append(session, entries);
+  };
+  if (!writing_->needs_checkpoint) {
+    storage_.journal().post(std::move(write), std::move(done));
+    return;
+  }
+  // Behind the checkpoint, which store() has posted to the same thread.
+  storage_.post([&storage = storage_, writing = writing_, write = std::move(write),
+                 done = std::move(done)]() mutable {
+    if (writing->needs_checkpoint) return done(StorageError::Kind::failed);
+    storage.journal().post(std::move(write), std::move(done));
+  });
 }
 
 void SessionLog::refuse(std::uint64_t sequence) {
   VAT_CHECK(sequence > 0 && sequence <= last_);
-  write_now([&] { storage_.sessions().refuse(session_, sequence); });
+  // Without the mark, a recovery refuses the entry as well, unless the server's limits have
+  // changed.
+  storage_.journal().post([&storage = storage_, session = session_, sequence] {
+    storage.sessions().refuse(session, sequence);
+  });
 }
 
-void SessionLog::configure(const std::string& name, const std::string& settings) {
-  write_now([&] { storage_.sessions().configure(session_, name, settings); });
+void SessionLog::reach(std::uint64_t position, Journal::Done done) {
+  storage_.journal().post([&storage = storage_, session = session_,
+                           position] { storage.sessions().reach(session, position); },
+                          std::move(done));
 }
 
-void SessionLog::reach(std::uint64_t position) {
-  write_now([&] { storage_.sessions().reach(session_, position); });
+void SessionLog::configure(std::string name, std::string settings, Journal::Done done) {
+  storage_.journal().post(
+      [&storage = storage_, session = session_, name = std::move(name),
+       settings = std::move(settings)] { storage.sessions().configure(session, name, settings); },
+      std::move(done));
 }
 
 bool SessionLog::is_checkpoint_due() const {
-  return needs_checkpoint_ || pace_.is_due(CheckpointPace::Seconds(writing_->checkpoint_cost));
+  return writing_->needs_checkpoint ||
+         pace_.is_due(CheckpointPace::Seconds(writing_->checkpoint_cost));
 }
 
 bool SessionLog::is_due(std::uint64_t position, std::uint64_t people,
                         SteadyClock::time_point now) const {
   if (writing_->under_way) return false;
   // The stored progress of a diverged session stays until somebody continues it.
-  const bool people_are_stored = needs_checkpoint_ || people == stored_people_;
+  const bool people_are_stored = writing_->needs_checkpoint || people == stored_people_;
   if (position == stored_position_ && last_ == stored_last_ && people_are_stored) return false;
   return now - stored_at_ >= kProgressInterval || is_checkpoint_due();
 }
@@ -84,11 +102,7 @@ bool SessionLog::is_due(std::uint64_t position, std::uint64_t people,
 void SessionLog::store(SessionMoment moment, SteadyClock::time_point now, bool always) {
   VAT_CHECK(moment.sequence <= last_);
   const bool with_checkpoint = always || is_checkpoint_due();
-  const bool needed_checkpoint = needs_checkpoint_;
-  if (with_checkpoint) {
-    pace_.begin();
-    needs_checkpoint_ = false;
-  }
+  if (with_checkpoint) pace_.begin();
   stored_position_ = moment.position;
   stored_last_ = last_;
   stored_people_ = moment.people;
@@ -96,26 +110,28 @@ void SessionLog::store(SessionMoment moment, SteadyClock::time_point now, bool a
   writing_->under_way = true;
   storage_.post([&storage = storage_, session = session_, moment = std::move(moment),
                  hashes = std::exchange(hashes_, {}), with_checkpoint, writing = writing_] {
-    // A failed write must not prevent the next one.
-    const std::shared_ptr<void> end(nullptr, [&](void*) { writing->under_way = false; });
-    write(storage, session, moment, with_checkpoint, *writing);
+    const auto end = [writing](auto) { writing->under_way = false; };
+    storage.journal().post(
+        [&storage, session, progress = moment.progress()] {
+          storage.sessions().write_progress(session, progress);
+        },
+        end);  // a failed write does not prevent the next one
+    if (with_checkpoint) write_checkpoint(storage, session, moment, *writing);
     storage.checkpoints().write_hashes(session, hashes);
   });
-  if (needed_checkpoint) storage_.flush();  // later entries depend on it
 }
 
 void SessionLog::store_then(SessionMoment moment, SteadyClock::time_point now,
                             std::function<void(Storage&, std::uint64_t)> task) {
   store(std::move(moment), now, true);
   storage_.post([&storage = storage_, session = session_, task = std::move(task)] {
+    storage.journal().flush();
     task(storage, session);
   });
 }
 
-void SessionLog::write(Storage& storage, std::uint64_t session, const SessionMoment& moment,
-                       bool with_checkpoint, Writing& writing) {
-  storage.sessions().write_progress(session, moment.progress());
-  if (!with_checkpoint) return;
+void SessionLog::write_checkpoint(Storage& storage, std::uint64_t session,
+                                  const SessionMoment& moment, Writing& writing) {
   const auto begin = thread_time();
   storage.checkpoints().write(
       {session, moment.position, moment.sequence, moment.fields(), moment.snapshot.to_bytes()});
@@ -123,12 +139,16 @@ void SessionLog::write(Storage& storage, std::uint64_t session, const SessionMom
   const CheckpointPace::Seconds cost = thread_time() - begin;
   writing.checkpoint_cost = cost.count();
   storage.count_checkpoint(cost);
+  const bool is_needed = writing.needs_checkpoint || is_log_full(storage, writing.log_bytes);
+  if (!is_needed) return;
+  storage.checkpoints().sync();  // before the log that it replaces is removed or continued
+  writing.needs_checkpoint = false;
   bound_log(storage, session, moment, writing);
 }
 
 void SessionLog::bound_log(Storage& storage, std::uint64_t session, const SessionMoment& moment,
                            Writing& writing) {
-  if (writing.log_bytes <= storage.limits().log_bytes) return;
+  if (!is_log_full(storage, writing.log_bytes)) return;
   storage.sessions().trim(session, moment.sequence, moment.loaded);
   // Entries that were appended meanwhile are counted twice, until the next trim.
   writing.log_bytes = storage.sessions().log_bytes(session);

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -43,8 +44,8 @@ class CheckpointPace {
   Seconds work_{0};
 };
 
-/// Stored log, progress and checkpoints of a session. Log entries are stored when append() returns.
-/// The storage's thread writes all other data. Not thread-safe.
+/// Stored log, progress and checkpoints of a session. The journal writes log entries and progress.
+/// The storage's thread writes all other data. No function waits for the disk. Not thread-safe.
 class SessionLog {
  public:
   /// State of the session at the opening of the log.
@@ -55,16 +56,22 @@ class SessionLog {
   };
   SessionLog(Storage& storage, std::uint64_t session, const Place& place);
 
-  /// Assigns sequences to the entries, and stores all entries or no entry. Throws StorageError.
-  void append(std::span<LogEntry> entries);
+  /// Assigns sequences to the entries, which follow the last stored entry.
+  void number(std::span<LogEntry> entries) const;
+  /// Stores all entries or no entry, and then calls `done`. If a checkpoint is needed first, stores
+  /// nothing until the checkpoint is stored. There must be no other append() without confirm().
+  void append(std::vector<LogEntry> entries, Journal::Done done);
+  /// Confirms that append() has stored its `count` entries.
+  void confirm(std::size_t count) { last_ += count; }
   /// Marks an entry as refused. A refused entry had no effect.
   void refuse(std::uint64_t sequence);
-  /// Stores that a recovery must repeat at least the ticks up to this position. Throws
-  /// StorageError.
-  void reach(std::uint64_t position);
+  /// Stores that a recovery must repeat at least the ticks up to this position.
+  void reach(std::uint64_t position, Journal::Done done);
   std::uint64_t last() const { return last_; }
-  /// Stores the settings of the session's owner. Throws StorageError.
-  void configure(const std::string& name, const std::string& settings);
+  /// Stores the settings of the session's owner.
+  void configure(std::string name, std::string settings, Journal::Done done);
+  /// Returns an estimate of the time until an entry is stored, which few entries exceed.
+  SteadyClock::duration expected_time() const { return storage_.journal().expected_time(); }
 
   /// Returns whether a hash of the state is stored at this position. With the hashes, a replay
   /// detects the first different tick. A hash is stored after each tick, and less often while
@@ -81,7 +88,8 @@ class SessionLog {
   bool is_due(std::uint64_t position, std::uint64_t people, SteadyClock::time_point now) const;
   /// Stores the progress. Also stores a checkpoint if a checkpoint is due or `always` is true.
   void store(SessionMoment moment, SteadyClock::time_point now, bool always = false);
-  /// Stores the progress and a checkpoint, and then runs `task` on the storage's thread.
+  /// Stores the progress and a checkpoint, and then runs `task` on the storage's thread. The
+  /// journal contains the progress by then.
   void store_then(SessionMoment moment, SteadyClock::time_point now,
                   std::function<void(Storage&, std::uint64_t session)> task);
   /// Frees the stored data of a closed session in the background.
@@ -91,15 +99,13 @@ class SessionLog {
   /// State shared with tasks of the storage's thread, which may outlive the log.
   struct Writing {
     std::atomic<bool> under_way = false;
+    std::atomic<bool> needs_checkpoint = false;
     std::atomic<double> checkpoint_cost = 0;  // [s]
     std::atomic<std::size_t> log_bytes = 0;
   };
   static constexpr std::uint64_t kSleepingHashInterval = 16;
-  /// Runs `write`, and counts a StorageError.
-  template <class Write>
-  void write_now(const Write& write);
-  static void write(Storage& storage, std::uint64_t session, const SessionMoment& moment,
-                    bool with_checkpoint, Writing& writing);
+  static void write_checkpoint(Storage& storage, std::uint64_t session, const SessionMoment& moment,
+                               Writing& writing);
   static void bound_log(Storage& storage, std::uint64_t session, const SessionMoment& moment,
                         Writing& writing);
   bool is_checkpoint_due() const;
@@ -113,7 +119,6 @@ class SessionLog {
   std::uint64_t stored_last_ = 0;
   std::uint64_t stored_people_ = 0;
   SteadyClock::time_point stored_at_{};
-  bool needs_checkpoint_;
   std::vector<TickHash> hashes_;  ///< hashes that are not stored yet
   const std::shared_ptr<Writing> writing_ = std::make_shared<Writing>();
 };

@@ -16,13 +16,14 @@ struct SiteSources {
   /// Returns whether a request with this header Authorization may read "/metrics".
   std::function<bool(std::string_view authorization)> may_read_metrics;
   std::function<ServerPhase()> phase;
-  std::string version;  ///< JSON text of "/version"
+  std::function<std::string()> health;  ///< returns the JSON text of "/healthz"
+  std::string version;                  ///< JSON text of "/version"
 };
 
 /// Returns a handler for GET and HEAD:
 /// - files of the viewer ("/" is "/index.html") in the encoding that the client prefers, with a tag
 ///   for If-None-Match. Without a viewer, "/" describes how to build it.
-/// - "/healthz": 200 while the process runs.
+/// - "/healthz": 200 while the process runs, with the state of the storage.
 /// - "/readyz": 200 if the server admits sessions, 503 while the server starts, recovers or drains.
 /// - "/version".
 /// - "/metrics": 401 if the request may not read them.

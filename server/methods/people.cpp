@@ -50,8 +50,7 @@ SessionAction read_session_configure(ObjectReader& params, Errors& errors) {
     if (name) settings.name = *name;
     if (role) settings.default_role = *role;
     if (is_locked) settings.is_locked = *is_locked;
-    core.people().configure(std::move(settings));
-    return core.people().describe_settings();
+    return StoreSettings{std::move(settings)};
   };
 }
 

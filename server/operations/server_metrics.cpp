@@ -75,6 +75,15 @@ void append_present(std::string& text, const ServerMetrics::Gauges& now) {
   append_memory(text, now.memory);
   append_counter(text, "vat_storage_failures_total", "Failed writes to the data folder.",
                  now.storage.failures);
+  append_gauge(text, "vat_storage_failing", "1 if the last write to the journal failed.",
+               now.storage.failing ? 1 : 0);
+  append_counter(text, "vat_journal_writes_total", "Completed writes to the journal.",
+                 now.storage.journal_writes);
+  append_counter(text, "vat_journal_commits_total", "Transactions of the journal.",
+                 now.storage.journal_commits);
+  append_head(text, "vat_journal_commit_seconds_total", "counter",
+              "Time of the transactions of the journal.");
+  append_sample(text, "vat_journal_commit_seconds_total", "", now.storage.commit_time.count());
   append_counter(text, "vat_checkpoints_total", "Written checkpoints of sessions.",
                  now.storage.checkpoints);
   append_head(text, "vat_checkpoint_seconds_total", "counter",

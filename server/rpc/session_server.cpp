@@ -52,6 +52,10 @@ std::string SessionServer::metrics() const {
   return parts_->directory.metrics();
 }
 
+std::string SessionServer::health() const {
+  return parts_->directory.health().dump();
+}
+
 void SessionServer::drain(std::chrono::milliseconds time) {
   parts_->directory.drain(time);
 }

@@ -38,6 +38,9 @@ class SessionServer : public ConnectionHandler {
   /// Returns the metrics in the text format of Prometheus.
   std::string metrics() const;
 
+  /// Returns the state of the storage as a JSON text for /healthz.
+  std::string health() const;
+
   /// Refuses new connections, sessions and joins. Informs clients that the server ends after
   /// `time`. Returns after `time`, or as soon as the last client has left.
   void drain(std::chrono::milliseconds time);

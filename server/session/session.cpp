@@ -30,6 +30,7 @@ Session::Session(std::unique_ptr<SessionCore> core, std::unique_ptr<Playback> pl
       tick_timer_(clock_.make_timer(strand_)),
       status_timer_(clock_.make_timer(strand_)),
       presence_timer_(clock_.make_timer(strand_)),
+      pointer_timer_(clock_.make_timer(strand_)),
       reads_(core_->environment()),
       slow_tick_gate_(slow_tick_gate) {
   VAT_CHECK(core_->playback() == playback_.get());
@@ -74,21 +75,8 @@ SessionSummary Session::summary() const {
 
 void Session::post_behind(std::function<void()> task) {
   boost::asio::post(strand_, [self = shared_from_this(), task = std::move(task)]() mutable {
+    if (self->has_writes()) return self->tasks_behind_writes_.push_back(std::move(task));
     self->core_->notifier().post_behind_frames(std::move(task));
-  });
-}
-
-void Session::store_then(StoredTask task, const std::shared_ptr<PendingReply>& reply) {
-  boost::asio::post(strand_, [self = shared_from_this(), task = std::move(task), reply] {
-    SessionHistory& history = self->core_->history();
-    SessionLog* const log = self->closed_ ? nullptr : history.log();
-    if (log == nullptr) {
-      reply->answer(no_such_session(self->id()));
-    } else if (history.divergence()) {
-      reply->answer(not_allowed("the session differs from its log"));
-    } else {
-      log->store_then(history.moment(), self->clock_.now(), task);
-    }
   });
 }
 
@@ -103,13 +91,16 @@ void Session::add(Item item) {
   }
 }
 
-void Session::schedule(void (Session::*turn)()) {
+void Session::schedule(Turn turn) {
   boost::asio::post(strand_, [self = shared_from_this(), turn] { self->run_turn(turn); });
 }
 
-void Session::run_turn(void (Session::*turn)()) {
+void Session::run_turn(Turn turn) {
   VAT_CHECK(on_strand());
   if (closed_) return;
+  const bool may_run = turn == &Session::written_turn || turn == &Session::reads_done_turn ||
+                       turn == &Session::presence_turn;
+  if (write_ && !may_run) return repeat_after_write(turn);
   const ThreadOwner::Hold hold(core_->owner());
   const ThreadPoolRunner::HelperReservation reservation(core_->environment().runner);
   try {
@@ -120,19 +111,27 @@ void Session::run_turn(void (Session::*turn)()) {
     core_->set_playing(false);
     period_ = {};
     tick_timer_->cancel();
+    end_hold();
   }
   place_.reset();
+  if (has_writes()) return;
+  for (const Turn waiting : std::exchange(waiting_turns_, {})) schedule(waiting);  // after a fault
+  for (auto& task : std::exchange(tasks_behind_writes_, {})) {
+    core_->notifier().post_behind_frames(std::move(task));
+  }
 }
 
 void Session::finish_turn() {
   if (closed_) return;
   if (core_->clock().take_interruption()) end_all_steps();
   if (!tick_is_coming()) execute_pointers();
+  if (core_->history().take_failing_change()) tell_storage();
   if (!seek_) core_->notifier().announce();
   if (playback_ && !seek_) playback_->tell_people(*core_, clock_.now());
   follow_presence();
   note_emptiness(clock_.now());
   follow_clock();
+  if (period_ == SteadyClock::duration::zero()) end_hold();
   update_summary();
   store_progress();
 }
@@ -149,29 +148,53 @@ void Session::inbox_turn() {
   core_->notifier().presence().touch();
   const auto end = CostClock::now() + kTurnTime;
   for (std::size_t i = 0; i < kCommandsPerTurn && CostClock::now() < end; ++i) {
-    std::optional<Item> item = inbox_.take();
-    if (!item) return;
+    std::optional<Item> item = next_item();
+    if (!item || put_back(*item)) return;
     try {
       execute(*std::move(item));
     } catch (...) {
       schedule(&Session::inbox_turn);  // for the requests that are left
       throw;
     }
+    if (write_) return repeat_after_write(&Session::inbox_turn);
   }
   schedule(&Session::inbox_turn);
 }
 
+std::optional<SessionInbox::Item> Session::next_item() {
+  if (put_back_.empty()) return inbox_.take();
+  std::optional<Item> item(std::move(put_back_.front()));
+  put_back_.pop_front();
+  return item;
+}
+
+bool Session::put_back(Item& item) {
+  const auto* command = std::get_if<SessionCommand>(&item.task);
+  if (command == nullptr) {
+    // The connection may have been another participant's.
+    if (execute_pointers()) return false;
+    repeat_after_write(&Session::inbox_turn);
+  } else {
+    const bool is_logged = core_->history().log() != nullptr && command->row->is_logged() &&
+                           command->row->rate_class != RateClass::pointer;
+    if (!is_logged || has_held_inbox_ || !is_tick_near()) return false;
+    holds_inbox_ = true;  // the next tick continues the inbox
+  }
+  put_back_.push_front(std::move(item));
+  return true;
+}
+
 void Session::execute(Item item) {
-  if (std::holds_alternative<SessionInbox::Leave>(item.task)) {
-    execute_leave(std::move(item.reply));
-    return;
-  }
-  if (std::holds_alternative<SessionInbox::Disconnect>(item.task)) {
-    execute_disconnect(item.reply);
-    return;
-  }
-  if (const auto job = find_step(item.reply.client()->id()); job != steps_.end()) {
+  const bool is_leave = std::holds_alternative<SessionInbox::Leave>(item.task);
+  const bool is_disconnect = std::holds_alternative<SessionInbox::Disconnect>(item.task);
+  const ConnectionId client = item.reply.client()->id();
+  if (StepJob* const job = find_job(client)) {
     job->deferred.push_back(std::move(item));
+    if (is_leave || is_disconnect) end_steps_of(client);
+  } else if (is_leave) {
+    execute_leave(std::move(item.reply));
+  } else if (is_disconnect) {
+    execute_disconnect(item.reply);
   } else if (const auto* join = std::get_if<SessionInbox::Join>(&item.task)) {
     execute_join(std::move(item.reply), *join);
   } else {
@@ -180,43 +203,49 @@ void Session::execute(Item item) {
 }
 
 void Session::execute_join(PendingReply reply, const SessionInbox::Join& join) {
-  execute_pointers();  // the connection may have been another participant's
   auto joined = core_->people().join(reply.client(), join.membership, join.request, clock_.now());
   if (auto* error = std::get_if<RpcError>(&joined)) {
     join.undo();
     reply.answer(std::move(*error));
     return;
   }
-  const auto& [participant, resume, resumed] = std::get<JoinedParticipant>(joined);
-  update_summary();  // before the answer, as below: lists then show what was done
-  const Json content{{"tick", core_->run().tick()},
-                     {"session", id()},
-                     {"participant", participant.number},
-                     {"name", participant.name},
-                     {"role", to_string(participant.role)},
-                     {"resume", resume},
-                     {"resumed", resumed},
-                     {"settings", core_->people().describe_settings()},
-                     {"participants", describe_participants(core_->participants())}};
-  const auto description = core_->notifier().description();
-  reply.answer_text(begin_object(content, "description") + description.begin, description.end);
+  const auto& result = std::get<JoinedParticipant>(joined);
+  const auto waiting = std::make_shared<PendingReply>(std::move(reply));
+  // First, because the connection may have been another participant's.
+  end_departures([this, waiting, number = result.participant.number, resume = result.resume,
+                  resumed = result.resumed] {
+    update_summary();  // before the answer, as below: lists then show what was done
+    const Participant* participant = core_->participants().find(number);
+    VAT_CHECK(participant != nullptr);
+    const Json content{{"tick", core_->run().tick()},
+                       {"session", id()},
+                       {"participant", number},
+                       {"name", participant->name},
+                       {"role", to_string(participant->role)},
+                       {"resume", resume},
+                       {"resumed", resumed},
+                       {"settings", core_->people().describe_settings()},
+                       {"participants", describe_participants(core_->participants())}};
+    const auto description = core_->notifier().description();
+    waiting->answer_text(begin_object(content, "description") + description.begin, description.end);
+  });
 }
 
 void Session::execute_leave(PendingReply reply) {
   const ConnectionId client = reply.client()->id();
-  execute_pointers();
-  end_steps_of(client);
   if (const Participant* participant = core_->participants().find_client(client)) {
     core_->people().leave(participant->number);
   }
-  update_summary();
-  reply.answer(Json{{"tick", core_->run().tick()}});
+  const auto waiting = std::make_shared<PendingReply>(std::move(reply));
+  end_departures([this, waiting] {
+    update_summary();
+    waiting->answer(Json{{"tick", core_->run().tick()}});
+  });
 }
 
 void Session::execute_disconnect(const PendingReply& reply) {
-  execute_pointers();
-  end_steps_of(reply.client()->id());
   core_->people().disconnect(reply.client()->id(), clock_.now());
+  end_departures([] {});
 }
 
 void Session::execute_command(PendingReply reply, SessionCommand command) {
@@ -235,30 +264,60 @@ void Session::execute_command(PendingReply reply, SessionCommand command) {
     return;
   }
   if (row.is_logged() && row.rate_class == RateClass::pointer) {
+    const bool is_first = pointers_.empty();
     pointers_.add(participant->number, std::move(command), std::move(reply));
+    if (is_first) plan_pointers(false);
     return;
   }
   // Keeps the order: of commands of the session, and of all requests of this client.
   const bool is_ordered = row.is_logged() || row.rate_class == RateClass::control;
-  if (is_ordered || pointers_.has_of(participant->number)) execute_pointers();
-  const ParticipantCommand by_participant{participant->number, command};
-  const auto begin = CostClock::now();
-  ActionResult result = std::move(core_->execute({&by_participant, 1}).front());
-  if (SessionLog* const log = core_->history().log()) log->add_work(CostClock::now() - begin);
-  if (core_->clock().take_interruption()) end_all_steps();
-  update_summary();
-  if (auto* read = std::get_if<Read>(&result)) {
-    std::string key = std::string(row.name) + command.params.dump() + read->copied;
-    reads_.add({std::move(reply), std::move(*read), std::move(key)});
-    return start_reads();
-  }
-  answer(std::move(reply), std::move(result));
+  Commands commands;
+  if (is_ordered || pointers_.has_of(participant->number)) commands = pointers_.take();
+  commands.push_back({participant->number, std::move(command), {}});
+  commands.back().replies.push_back(std::move(reply));
+  run_commands(std::move(commands));
 }
 
-void Session::answer(PendingReply reply, ActionResult result) {
+void Session::run_commands(Commands commands, std::function<void()> then) {
+  struct Running {
+    Commands commands;
+    CommandBatch batch;
+    std::vector<ActionResult> results;
+  };
+  const auto running = std::make_shared<Running>(Running{std::move(commands), {}, {}});
+  std::vector<ParticipantCommand> of_participants;
+  for (const auto& one : running->commands) {
+    of_participants.push_back({one.participant, one.command});
+  }
+  running->batch = core_->prepare(of_participants);
+  auto entries = std::exchange(running->batch.entries, {});
+  log_then(std::move(entries), [this, running, then = std::move(then)](
+                                   std::span<const LogEntry> stored, const Failure& failure) {
+    const auto begin = CostClock::now();
+    running->results = core_->execute(running->batch, stored, failure);
+    if (SessionLog* const log = core_->history().log()) log->add_work(CostClock::now() - begin);
+    end_departures([this, running, then] {
+      answer_all(running->commands, running->results);
+      if (then) then();
+    });
+  });
+}
+
+void Session::answer_all(Commands& commands, std::vector<ActionResult>& results) {
+  VAT_CHECK(results.size() == commands.size());
+  if (core_->clock().take_interruption()) end_all_steps();
+  update_summary();
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    for (PendingReply& reply : commands[i].replies) {
+      answer(std::move(reply), commands[i].command, results[i]);
+    }
+  }
+}
+
+void Session::answer(PendingReply reply, const SessionCommand& command, ActionResult result) {
   if (const auto* run = std::get_if<RunTicks>(&result)) {
     VAT_CHECK(run->count > 0);
-    steps_.push_back({std::move(reply), run->count, {}});
+    steps_.push_back({std::move(reply), run->count, {}, 0});
     schedule_step();
   } else if (std::holds_alternative<MakeRecording>(result)) {
     export_recording(std::move(reply));
@@ -266,6 +325,12 @@ void Session::answer(PendingReply reply, ActionResult result) {
     begin_seek(std::move(reply), seek->position);
   } else if (auto* wanted = std::get_if<SaveState>(&result)) {
     save(std::move(reply), std::move(*wanted));
+  } else if (auto* settings = std::get_if<StoreSettings>(&result)) {
+    store_settings(std::move(reply), std::move(settings->settings));
+  } else if (auto* read = std::get_if<Read>(&result)) {
+    std::string key = std::string(command.row->name) + command.params.dump() + read->copied;
+    reads_.add({std::move(reply), std::move(*read), std::move(key)});
+    start_reads();
   } else if (auto* error = std::get_if<RpcError>(&result)) {
     reply.answer(std::move(*error));
   } else {
@@ -275,47 +340,10 @@ void Session::answer(PendingReply reply, ActionResult result) {
   }
 }
 
-void Session::execute_pointers() {
-  if (pointers_.empty()) return;
+bool Session::execute_pointers() {
   VAT_CHECK(on_strand());
-  std::vector<PointerCommands::Latest> waiting = pointers_.take();
-  std::vector<ParticipantCommand> commands;
-  commands.reserve(waiting.size());
-  for (const auto& latest : waiting) commands.push_back({latest.participant, latest.command});
-  const std::vector<ActionResult> results = core_->execute(commands);
-  VAT_CHECK(results.size() == waiting.size());
-  for (std::size_t i = 0; i < waiting.size(); ++i) {
-    for (PendingReply& reply : waiting[i].replies) answer(std::move(reply), results[i]);
-  }
-}
-
-Session::Steps::iterator Session::find_step(ConnectionId client) {
-  return std::ranges::find_if(
-      steps_, [&](const StepJob& job) { return job.reply.client()->id() == client; });
-}
-
-void Session::end_steps_of(ConnectionId client) {
-  for (auto job = find_step(client); job != steps_.end(); job = find_step(client)) end_step(job);
-}
-
-void Session::end_step(Steps::iterator job) {
-  VAT_CHECK(job != steps_.end());
-  StepJob ended = std::move(*job);
-  steps_.erase(job);
-  update_summary();
-  if (auto error = core_->history().reach()) {
-    ended.reply.answer(*std::move(error));
-  } else {
-    ended.reply.answer(Json{{"tick", core_->run().tick()}});
-  }
-  for (Item& item : ended.deferred) execute(std::move(item));
-}
-
-void Session::end_all_steps() {
-  // Deferred requests may start new steps, which stay.
-  for (std::size_t count = steps_.size(); count > 0 && !steps_.empty(); --count) {
-    end_step(steps_.begin());
-  }
+  if (!write_ && !pointers_.empty()) run_commands(pointers_.take());
+  return !write_;
 }
 
 void Session::close_turn() {
@@ -324,6 +352,7 @@ void Session::close_turn() {
   tick_timer_->cancel();
   status_timer_->cancel();
   presence_timer_->cancel();
+  pointer_timer_->cancel();
   std::deque<Item> items = inbox_.close();
   std::optional<PendingReply> closing;
   End end = End::resumable;
@@ -337,11 +366,14 @@ void Session::close_turn() {
   if (seek_) {
     for (PendingReply& reply : *seek_) reply.answer(error);
   }
-  for (StepJob& job : steps_) {
-    job.reply.answer(error);
-    for (Item& item : job.deferred) item.reply.answer(error);
+  for (Steps* const steps : {&ending_steps_, &steps_}) {
+    for (StepJob& job : *steps) {
+      job.reply.answer(error);
+      for (Item& item : job.deferred) item.reply.answer(error);
+    }
+    steps->clear();
   }
-  steps_.clear();
+  for (Item& item : std::exchange(put_back_, {})) item.reply.answer(error);
   for (auto& latest : pointers_.take()) {
     for (PendingReply& reply : latest.replies) reply.answer(error);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/strand.hpp>
 #include <boost/asio/thread_pool.hpp>
 #include <deque>
@@ -7,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,6 +29,10 @@ namespace vat {
 /// The strand works in short turns (some commands, or one tick). A session therefore waits for
 /// another session at most one turn. The number of concurrent slow ticks is less than the number of
 /// pool threads.
+///
+/// The session executes logged commands after the journal has stored them. Meanwhile most turns
+/// wait, but no thread waits. So that ticks rarely wait, commands shortly before a tick are logged
+/// after the tick.
 class Session : public std::enable_shared_from_this<Session> {
  public:
   /// `playback` is null except for a replay. The pool and the gate must outlive the session.
@@ -66,41 +72,66 @@ class Session : public std::enable_shared_from_this<Session> {
 
  private:
   using Item = SessionInbox::Item;
+  using Turn = void (Session::*)();
+  /// Commands that are logged and executed together, with the replies to each.
+  using Commands = std::vector<PointerCommands::Latest>;
+  using Failure = std::optional<RpcError>;
   /// A running control.step. Later requests of the same client wait for the end of the job.
   struct StepJob {
     PendingReply reply;
     std::uint64_t ticks_left;
     std::deque<Item> deferred;
+    std::uint64_t end_tick = 0;  // tick after the job
   };
   using Steps = std::deque<StepJob>;
+  /// A running write to the log, for which the session waits.
+  struct LogWrite {
+    std::function<void(const Failure&)> then;
+    std::optional<StorageError::Kind> failure;
+    /// Keeps the pool running until the write is complete.
+    boost::asio::executor_work_guard<boost::asio::thread_pool::executor_type> guard;
+  };
 
   bool on_strand() const { return strand_.running_in_this_thread(); }
   const std::string& id() const { return core_->id(); }
   void add(Item item);
   /// Runs a turn on the strand. An exception is logged and pauses the session.
-  void schedule(void (Session::*turn)());
-  void run_turn(void (Session::*turn)());
+  void schedule(Turn turn);
+  void run_turn(Turn turn);
   void finish_turn();
   void update_summary();
 
   // Requests, implemented in session.cpp.
   void inbox_turn();
+  std::optional<Item> next_item();
+  /// Returns true if the item must wait for a write to the log or for the next tick.
+  bool put_back(Item& item);
   void execute(Item item);
   void execute_join(PendingReply reply, const SessionInbox::Join& join);
   void execute_leave(PendingReply reply);
   void execute_disconnect(const PendingReply& reply);
   void execute_command(PendingReply reply, SessionCommand command);
+  /// Logs and executes the commands. Then answers, and calls `then`, if present.
+  void run_commands(Commands commands, std::function<void()> then = {});
+  void answer_all(Commands& commands, std::vector<ActionResult>& results);
   /// Answers the request, or starts the work that the result specifies.
-  void answer(PendingReply reply, ActionResult result);
+  void answer(PendingReply reply, const SessionCommand& command, ActionResult result);
   /// Returns whether pointer commands wait for the next tick.
   bool tick_is_coming() const { return core_->clock().playing() || !steps_.empty(); }
-  void execute_pointers();
-  Steps::iterator find_step(ConnectionId client);
-  void end_steps_of(ConnectionId client);
-  /// Answers the job and executes its deferred requests.
-  void end_step(Steps::iterator job);
-  void end_all_steps();
+  /// Executes the waiting pointer commands, unless a write to the log is running. Returns false if
+  /// the caller must wait for a write.
+  bool execute_pointers();
   void close_turn();
+
+  // Jobs of control.step, implemented in session_steps.cpp.
+  StepJob* find_job(ConnectionId client);
+  void end_steps_of(ConnectionId client);
+  /// Ends the job. Answers the job after the reached tick is stored, and then executes its deferred
+  /// requests.
+  void end_step(Steps::iterator job);
+  void steps_stored_turn();
+  void answer_step(StepJob job, const Failure& failure);
+  void end_all_steps();
 
   // Work on other threads, implemented in session_work.cpp.
   /// Starts the computation of the waiting reads on the read thread.
@@ -108,6 +139,32 @@ class Session : public std::enable_shared_from_this<Session> {
   void reads_done_turn();
   void export_recording(PendingReply reply);
   void save(PendingReply reply, SaveState save);
+
+  // Writes to the log, implemented in session_writes.cpp.
+  /// Stores log entries and then calls `work`, with an error if the entries could not be stored. If
+  /// the session is not stored, calls `work` at once.
+  void log_then(std::vector<LogEntry> entries,
+                std::function<void(std::span<const LogEntry>, const Failure&)> work);
+  /// Calls `write` and then, after the write is complete, `then`. The session must be stored.
+  void write_then(const std::function<void(SessionLog&, Journal::Done)>& write,
+                  std::function<void(const Failure&)> then);
+  /// Lets `turn` run again after the running write to the log.
+  void repeat_after_write(Turn turn) { waiting_turns_.push_back(turn); }
+  void written_turn();
+  void resume_turns();
+  /// Logs and executes departures and ends of grabs that are due, and then calls `then`.
+  void end_departures(const std::function<void()>& then);
+  void store_settings(PendingReply reply, SessionSettings settings);
+  /// Returns the time before a tick in which no write to the log should begin.
+  SteadyClock::duration write_time() const;
+  bool is_tick_near() const;
+  /// Schedules the write of the waiting pointer commands for the tick after `now`.
+  void plan_pointers(bool after_tick);
+  void pointer_turn() { execute_pointers(); }
+  void end_hold();
+  bool has_writes() const { return write_.has_value() || !ending_steps_.empty(); }
+  /// Sends the event session.storage.
+  void tell_storage();
 
   // Ticks and timers, implemented in session_ticks.cpp.
   void schedule_step();
@@ -124,6 +181,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void follow_clock();
   void wait_for_tick();
   void status_turn();
+  void upkeep_turn();
   void wait_for_status();
   void note_emptiness(SteadyClock::time_point now);
   /// Sends changed presence data. Waits if presence data was sent shortly before.
@@ -154,8 +212,18 @@ class Session : public std::enable_shared_from_this<Session> {
   const std::unique_ptr<Timer> presence_timer_;
   bool presence_waits_ = false;
   PointerCommands pointers_;
+  const std::unique_ptr<Timer> pointer_timer_;
+  bool pointers_skip_tick_ = false;  // the pointer commands came too late for the next tick
   SessionReads reads_;
   Steps steps_;
+  Steps ending_steps_;  // jobs whose reached tick is being stored
+  std::deque<std::optional<StorageError::Kind>> stored_steps_;  // results for the first of them
+  std::deque<Item> put_back_;  // requests before those of the inbox
+  bool holds_inbox_ = false;   // the inbox waits for the next tick
+  bool has_held_inbox_ = false;
+  std::optional<LogWrite> write_;
+  std::vector<Turn> waiting_turns_;  // wait for write_
+  std::vector<std::function<void()>> tasks_behind_writes_;
   bool step_scheduled_ = false;
   SlowTickGate& slow_tick_gate_;
   bool is_slow_ = false;  // whether the last tick was slow

@@ -15,7 +15,6 @@ SessionInbox::Added SessionInbox::add(Item& item) {
 
 std::optional<SessionInbox::Item> SessionInbox::take() {
   const std::lock_guard lock(mutex_);
-  VAT_CHECK(turn_scheduled_);
   if (items_.empty()) {
     turn_scheduled_ = false;
     return {};

@@ -35,7 +35,7 @@ class SessionInbox {
   };
   Added add(Item& item);
   /// Removes and returns the first item. If the queue is empty, the next add() returns
-  /// Added::first, and its caller must schedule a turn of the strand.
+  /// Added::first, and its caller must schedule a turn of the strand. Further turns do no harm.
   std::optional<Item> take();
   /// Closes the inbox and returns the remaining items. A closed inbox refuses new items.
   std::deque<Item> close();

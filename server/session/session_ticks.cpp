@@ -52,7 +52,12 @@ void Session::schedule_step() {
 
 void Session::step_turn() {
   step_scheduled_ = false;
-  if (steps_.empty() || seek_ || !has_place()) return;  // end_seek() continues the steps
+  if (steps_.empty() || seek_) return;  // end_seek() continues the steps
+  if (!execute_pointers()) {
+    step_scheduled_ = true;
+    return repeat_after_write(&Session::step_turn);
+  }
+  if (!has_place()) return;
   run_tick(clock_.now(), false);
   if (core_->clock().take_interruption()) {
     end_all_steps();
@@ -67,16 +72,19 @@ void Session::tick_turn() {
   // A timer may have fired before the session was paused or its speed changed.
   const bool is_off = period_ == SteadyClock::duration::zero() || !core_->clock().playing();
   if (is_off || seek_ || now < ticks_.due()) return;
+  if (write_) return repeat_after_write(&Session::tick_turn);
+  if (!pointers_skip_tick_ && !execute_pointers()) return repeat_after_write(&Session::tick_turn);
   if (!has_place()) return;
   core_->environment().metrics.add_lateness(now - ticks_.due());
   run_tick(now, true);
   ticks_.tick_done(clock_.now());
   wait_for_tick();
+  plan_pointers(true);
+  end_hold();
 }
 
 void Session::run_tick(SteadyClock::time_point now, bool timed) {
-  VAT_CHECK(on_strand() && !seek_);
-  execute_pointers();
+  VAT_CHECK(on_strand() && !seek_ && !write_);
   const auto due = timed ? ticks_.due() : now;
   const auto begin = CostClock::now();
   const bool done = playback_ ? playback_->tick(*core_, now, timed) : core_->tick(now, timed);
@@ -163,9 +171,21 @@ void Session::wait_for_tick() {
 void Session::status_turn() {
   wait_for_status();  // first, so that a fault does not end the statuses
   core_->notifier().presence().touch();
-  execute_pointers();  // they count as moves of their grabs
-  core_->end_idle_grabs(clock_.now());
-  core_->people().end_absences(clock_.now());
+  // They count as moves of their grabs.
+  if (!execute_pointers()) return repeat_after_write(&Session::upkeep_turn);
+  upkeep_turn();
+}
+
+void Session::upkeep_turn() {
+  const std::vector<SessionCore::IdleGrab> idle = core_->idle_grabs(clock_.now());
+  Commands commands;
+  for (const auto& [participant, grab, body] : idle) {
+    const SessionMethods& methods = core_->environment().methods;
+    commands.push_back({participant, methods.make("grab.end", {{"grab", grab}}), {}});
+  }
+  run_commands(std::move(commands), [this, idle] {
+    for (const SessionCore::IdleGrab& one : idle) core_->tell_idle_grab(one);
+  });
   core_->notifier().announce_status();
   core_->participants().close_silent(clock_.now(), core_->environment().limits.frame_patience);
 }

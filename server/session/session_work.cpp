@@ -25,6 +25,20 @@ void Session::reads_done_turn() {
   start_reads();
 }
 
+void Session::store_then(StoredTask task, const std::shared_ptr<PendingReply>& reply) {
+  boost::asio::post(strand_, [self = shared_from_this(), task = std::move(task), reply] {
+    SessionHistory& history = self->core_->history();
+    SessionLog* const log = self->closed_ ? nullptr : history.log();
+    if (log == nullptr) {
+      reply->answer(no_such_session(self->id()));
+    } else if (history.divergence()) {
+      reply->answer(not_allowed("the session differs from its log"));
+    } else {
+      log->store_then(history.moment(), self->clock_.now(), task);
+    }
+  });
+}
+
 void Session::export_recording(PendingReply reply) {
   const auto pending = std::make_shared<PendingReply>(std::move(reply));
   if (core_->environment().downloads == nullptr) {

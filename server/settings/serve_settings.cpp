@@ -270,6 +270,9 @@ std::vector<Setting> storage_group(ServeSettings& s) {
   return {
       text_setting("data", s.data, "FOLDER",
                    "Folder in which sessions persist; none: sessions exist in memory only"),
+      word_setting("durability", s.durability, {"power", "process"},
+                   "Failures that answered commands survive; power: also a power failure; process: "
+                   "a crash of the server, without waits for the disk"),
       time_setting("checkpoint_seconds", s.storage.checkpoint_after, 0.001, kMaxSeconds,
                    "Computing time between two checkpoints of a session, which recovery repeats at "
                    "most; longer if checkpoints would take more than 5 % of the time"),

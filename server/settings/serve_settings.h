@@ -8,7 +8,7 @@
 
 #include "server/messages/limits.h"
 #include "server/settings/setting.h"
-#include "server/storage/sqlite/storage_limits.h"
+#include "server/storage/sqlite/storage_settings.h"
 
 namespace vat {
 
@@ -35,7 +35,8 @@ struct ServeSettings {
   ServerLimits limits;
   std::chrono::milliseconds drain_time{0};
   std::string data = "none";  ///< folder for stored sessions, or "none"
-  StorageLimits storage;
+  StorageSettings storage;
+  std::string durability = "power";  ///< "power" or "process"
 };
 
 /// Returns the table of all settings. Options, environment variables, members of a configuration

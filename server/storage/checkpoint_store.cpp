@@ -57,9 +57,11 @@ std::size_t find_redundant(const std::vector<CheckpointPlace>& places) {
 
 CheckpointStore::CheckpointStore(const std::string& path, std::size_t session_bytes)
     : session_bytes_(session_bytes),
-      database_(open_database(path, {kCheckpointApplication, kCheckpointSteps})),
+      // A lost checkpoint only makes a recovery repeat more. sync() is for the other cases.
+      database_(
+          open_database(path, {kCheckpointApplication, kCheckpointSteps}, Durability::process)),
       mover_(path, Database::Mode::create) {
-  mover_.use_log();
+  mover_.use_log(Durability::process);
 }
 
 std::size_t CheckpointStore::write(const Checkpoint& checkpoint) {

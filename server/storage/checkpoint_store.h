@@ -66,6 +66,9 @@ class CheckpointStore {
   void keep_only(const std::vector<std::uint64_t>& sessions);
 
   std::size_t move_log(bool wait) { return mover_.move_log(wait); }
+  /// Synchronises all written checkpoints with the disk. Must not be called together with
+  /// move_log().
+  void sync() { move_log(false); }
 
  private:
   std::vector<CheckpointPlace> places_locked(std::uint64_t session);

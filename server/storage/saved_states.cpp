@@ -52,8 +52,8 @@ std::size_t bytes_of(const SavedState& state) {
 
 }  // namespace
 
-SavedStates::SavedStates(const std::string& path)
-    : database_(open_database(path, {kStateApplication, kStateSteps})) {}
+SavedStates::SavedStates(const std::string& path, Durability durability)
+    : database_(open_database(path, {kStateApplication, kStateSteps}, durability)) {}
 
 std::optional<LimitExcess> SavedStates::find_excess(const std::string& session,
                                                     const SavedState& state,

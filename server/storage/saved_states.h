@@ -41,7 +41,7 @@ struct SavedStateLimits {
 class SavedStates {
  public:
   /// `path` may be MainDatabase::kInMemory.
-  explicit SavedStates(const std::string& path);
+  explicit SavedStates(const std::string& path, Durability durability = Durability::process);
 
   /// Writes or replaces the state with this name. Returns the limit that would be exceeded, if any.
   std::optional<LimitExcess> write(const std::string& session, const SavedState& state,

@@ -46,15 +46,15 @@ constexpr const char* kSelectEntries =
 
 }  // namespace
 
-SessionStore::SessionStore(const std::string& path)
-    : main_(std::make_shared<MainDatabase>(path)),
+SessionStore::SessionStore(const std::string& path, Durability durability)
+    : main_(std::make_shared<MainDatabase>(path, durability)),
       mutex_(main_->mutex),
       database_(main_->database),
       mover_(path, Database::Mode::create),
       insert_entry_(database_, kInsertEntry),
       write_progress_(database_, kWriteProgress),
       write_reached_(database_, kWriteReached) {
-  mover_.use_log();
+  mover_.use_log(durability);
 }
 
 std::uint64_t SessionStore::create(const StoredSession& session, const LogEntry& first) {

@@ -36,11 +36,12 @@ struct StoredSession {
   std::optional<SessionProgress> progress;
 };
 
-/// Store of sessions and their logs. A write is complete when the function returns, and then
-/// survives a crash of the process. Thread-safe. Functions throw StorageError.
+/// Store of sessions and their logs. A write is complete when the function returns or, within a
+/// transaction of the journal, with the end of the transaction. Thread-safe. Functions throw
+/// StorageError.
 class SessionStore {
  public:
-  explicit SessionStore(const std::string& path);
+  explicit SessionStore(const std::string& path, Durability durability = Durability::process);
 
   /// Returns the database of the sessions, which other stores share.
   const std::shared_ptr<MainDatabase>& main() const { return main_; }
@@ -70,6 +71,8 @@ class SessionStore {
   /// Removes the entries up to the sequence `last`. Does not remove `kept`, because later entries
   /// need it.
   void trim(std::uint64_t session, std::uint64_t last, std::uint64_t kept);
+  /// Removes some of the entries for trim(). Returns false if no entries are left to remove.
+  bool trim_some(std::uint64_t session, std::uint64_t last, std::uint64_t kept);
 
   void write_progress(std::uint64_t session, const SessionProgress& progress);
   /// Stores that a recovery must repeat at least the ticks up to this position.
@@ -83,11 +86,9 @@ class SessionStore {
  private:
   /// The caller must hold the mutex.
   void insert(std::uint64_t session, const LogEntry& entry);
-  /// Removes some of the entries for trim(). Returns false if no entries are left to remove.
-  bool trim_some(std::uint64_t session, std::uint64_t last, std::uint64_t kept);
 
   const std::shared_ptr<MainDatabase> main_;
-  std::mutex& mutex_;
+  std::recursive_mutex& mutex_;
   Database& database_;
   Database mover_;
   Statement insert_entry_;

@@ -35,15 +35,16 @@ std::vector<std::string> ids_of(const std::vector<StoredSession>& sessions) {
 
 }  // namespace
 
-Storage::Storage(const std::string& folder, const StorageLimits& limits, Clock& clock)
+Storage::Storage(const std::string& folder, const StorageSettings& settings, Clock& clock)
     : folder_(folder),
-      limits_(limits),
+      settings_(settings),
       clock_(clock),
-      sessions_(folder_.file("vat.db")),
-      checkpoints_(folder_.file("checkpoints.db"), limits.checkpoint_bytes),
-      states_(folder_.file("states.db")),
+      sessions_(folder_.file("vat.db"), settings.durability),
+      checkpoints_(folder_.file("checkpoints.db"), settings.checkpoint_bytes),
+      states_(folder_.file("states.db"), settings.durability),
       scenes_(sessions_.main()),
       tokens_(sessions_.main()),
+      journal_(*sessions_.main(), clock),
       move_timer_(clock.make_timer(thread_.get_executor())) {
   states_.keep_only(ids_of(sessions_.sessions()));
   remove_closed();
@@ -67,6 +68,7 @@ void Storage::flush() {
   std::promise<void> done;
   boost::asio::post(thread_, [&done] { done.set_value(); });
   done.get_future().wait();
+  journal_.flush();
 }
 
 void Storage::run(const std::function<void()>& task) {
@@ -80,7 +82,11 @@ void Storage::run(const std::function<void()>& task) {
 }
 
 StorageCounts Storage::counts() const {
-  return {failures_, checkpoints_written_, std::chrono::nanoseconds(checkpoint_nanoseconds_)};
+  StorageCounts counts = journal_.counts();
+  counts.failures += failures_;
+  counts.checkpoints = checkpoints_written_;
+  counts.checkpoint_time = std::chrono::nanoseconds(checkpoint_nanoseconds_);
+  return counts;
 }
 
 void Storage::count_checkpoint(std::chrono::duration<double> cost) {

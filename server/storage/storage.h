@@ -9,30 +9,33 @@
 
 #include "server/storage/checkpoint_store.h"
 #include "server/storage/data_folder.h"
+#include "server/storage/journal.h"
 #include "server/storage/saved_scenes.h"
 #include "server/storage/saved_states.h"
 #include "server/storage/session_store.h"
-#include "server/storage/sqlite/storage_limits.h"
+#include "server/storage/sqlite/storage_settings.h"
 #include "server/storage/storage_counts.h"
 #include "server/storage/token_store.h"
 #include "server/support/clock.h"
 
 namespace vat {
 
-/// Data folder of a server, with a thread for slow work: checkpoints, removal of closed sessions,
-/// and copies of write-ahead logs. Other threads do not wait for the disk.
+/// Data folder of a server, with a journal (a thread that writes commands) and a thread for slow
+/// work: checkpoints, removal of closed sessions, and copies of write-ahead logs.
 class Storage {
  public:
   /// Opens or creates the folder. Throws StorageError.
-  Storage(const std::string& folder, const StorageLimits& limits, Clock& clock);
+  Storage(const std::string& folder, const StorageSettings& settings, Clock& clock);
   /// Completes all posted tasks.
   ~Storage();
   Storage(const Storage&) = delete;
   Storage& operator=(const Storage&) = delete;
 
   const std::string& folder() const { return folder_.path(); }
-  const StorageLimits& limits() const { return limits_; }
+  const StorageSettings& settings() const { return settings_; }
   SessionStore& sessions() { return sessions_; }
+  /// Returns the thread for writes to sessions(), scenes() and tokens() in common transactions.
+  Journal& journal() { return journal_; }
   CheckpointStore& checkpoints() { return checkpoints_; }
   SavedStates& states() { return states_; }
   SavedScenes& scenes() { return scenes_; }
@@ -40,7 +43,7 @@ class Storage {
 
   /// Runs a task on the storage's thread, in the order of the calls. Exceptions are logged.
   void post(std::function<void()> task);
-  /// Waits until all posted tasks have run.
+  /// Waits until all posted tasks have run and all writes of the journal are complete.
   void flush();
   /// Frees the data of closed sessions.
   void remove_closed();
@@ -57,13 +60,14 @@ class Storage {
   void wait_to_move();
 
   const DataFolder folder_;
-  const StorageLimits limits_;
+  const StorageSettings settings_;
   const Clock& clock_;
   SessionStore sessions_;
   CheckpointStore checkpoints_;
   SavedStates states_;
   SavedScenes scenes_;
   TokenStore tokens_;
+  Journal journal_;
   std::atomic<std::uint64_t> failures_ = 0;
   std::atomic<std::uint64_t> checkpoints_written_ = 0;
   std::atomic<std::uint64_t> checkpoint_nanoseconds_ = 0;

@@ -2,6 +2,9 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
+
+#include "server/storage/sqlite/storage_error.h"
 
 namespace vat {
 
@@ -10,6 +13,10 @@ struct StorageCounts {
   std::uint64_t failures = 0;  ///< failed writes
   std::uint64_t checkpoints = 0;
   std::chrono::duration<double> checkpoint_time{};  ///< processor time
+  std::uint64_t journal_writes = 0;                 ///< completed writes of the journal
+  std::uint64_t journal_commits = 0;                ///< transactions that contain these writes
+  std::chrono::duration<double> commit_time{};      ///< time of these transactions
+  std::optional<StorageError::Kind> failing;        ///< error of the journal's last write, if any
 };
 
 }  // namespace vat

@@ -48,7 +48,7 @@ HttpHandler make_site(const test::TemporaryFolder& folder) {
   return make_http_site(StaticFiles::read(folder.path()).value(),
                         {[] { return "vat_threads 1\n"; },
                          [access](std::string_view text) { return may_read_metrics(access, text); },
-                         [] { return ServerPhase::ready; }, "{}"});
+                         [] { return ServerPhase::ready; }, [] { return "{}"; }, "{}"});
 }
 
 /// A server of which 127.0.0.1 is a trusted proxy. A fault in the server ends the process.

@@ -429,6 +429,13 @@ export interface PresenceChanged {
   participants: Participant[];
   left: ParticipantId[];
 }
+/** The server can no longer, or can again, store the session's commands */
+export interface SessionStorage {
+  /** True while the server rejects commands with storage_failed */
+  failing: boolean;
+  /** Only if failing */
+  reason?: 'full' | 'read_only' | 'corrupt' | 'newer' | 'locked' | 'failed';
+}
 /** The server has ended a grab that was not moved */
 export interface GrabEnded {
   grab: GrabId;
@@ -1134,6 +1141,7 @@ export interface Events {
   'session.closed': SessionClosed;
   'session.configured': Settings;
   'presence.changed': PresenceChanged;
+  'session.storage': SessionStorage;
   'grab.ended': GrabEnded;
   'notification.rejected': NotificationRejected;
   'control.requested': ControlRequested;
@@ -1151,6 +1159,7 @@ export const kEventNames = [
   'session.closed',
   'session.configured',
   'presence.changed',
+  'session.storage',
   'grab.ended',
   'notification.rejected',
   'control.requested',

@@ -12,6 +12,7 @@
 #include "protocol/json/json_reader.h"
 #include "server/messages/method_row.h"
 #include "server/people/participants.h"
+#include "server/people/session_settings.h"
 
 namespace vat {
 
@@ -37,6 +38,11 @@ struct SaveState {
   std::string saved_by;
 };
 
+/// Request to store and apply settings of the session.
+struct StoreSettings {
+  SessionSettings settings;
+};
+
 /// Read whose result is computed later on another thread, because it may take long.
 struct Read {
   bool needs_state = true;  ///< whether `make` uses the state of the simulation
@@ -49,7 +55,8 @@ struct Read {
 
 /// Result of an action: content of the reply, an error, or work before the reply. The session adds
 /// the member `tick` to the content.
-using ActionResult = std::variant<Json, RpcError, RunTicks, MakeRecording, SeekTo, SaveState, Read>;
+using ActionResult =
+    std::variant<Json, RpcError, RunTicks, MakeRecording, SeekTo, SaveState, StoreSettings, Read>;
 
 /// Function that executes a command with valid parameters.
 using SessionAction = std::function<ActionResult(SessionCore&, Participant&)>;

@@ -94,42 +94,45 @@ bool SessionCore::tick(SteadyClock::time_point now, bool timed) {
   return true;
 }
 
-std::vector<ActionResult> SessionCore::execute(std::span<const ParticipantCommand> commands) {
+CommandBatch SessionCore::prepare(std::span<const ParticipantCommand> commands) const {
   VAT_CHECK(context_.owner.allows_this_thread());
-  std::vector<LogEntry> entries;
-  std::vector<std::variant<CommandEntry, RpcError>> prepared;
+  CommandBatch batch;
   for (const ParticipantCommand& command : commands) {
+    CommandBatch::Item& item = batch.items.emplace_back(CommandBatch::Item{command, {}, {}});
     if (!command.command.row->is_logged()) continue;
-    prepared.push_back(make_command_entry(context_, history_, command));
-    if (auto* good = std::get_if<CommandEntry>(&prepared.back())) {
-      entries.push_back(std::move(good->entry));
+    auto made = make_command_entry(context_, history_, command);
+    if (auto* entry = std::get_if<CommandEntry>(&made)) {
+      batch.entries.push_back(std::move(entry->entry));
+      item.action = std::move(entry->action);
+    } else {
+      item.error = std::get<RpcError>(std::move(made));
     }
   }
-  if (auto error = history_.append(entries)) {
-    return std::vector<ActionResult>(commands.size(), *error);
-  }
+  return batch;
+}
 
+std::vector<ActionResult> SessionCore::execute(const CommandBatch& batch,
+                                               std::span<const LogEntry> entries,
+                                               const std::optional<RpcError>& failure) {
+  VAT_CHECK(context_.owner.allows_this_thread());
   std::vector<ActionResult> results;
   auto entry = entries.begin();
-  auto next = prepared.begin();
-  for (const ParticipantCommand& command : commands) {
-    if (!command.command.row->is_logged()) {
-      results.push_back(act(command.participant, command.command.action));
-      continue;
+  for (const CommandBatch::Item& item : batch.items) {
+    const auto& [participant, command] = item.command;
+    if (item.error) {
+      results.push_back(*item.error);
+    } else if (!command.row->is_logged()) {
+      results.push_back(act(participant, command.action));
+    } else if (failure) {
+      results.push_back(*failure);
+    } else {
+      VAT_CHECK(entry != entries.end());
+      results.push_back(execute(*entry, item.action ? *item.action : command.action));
+      if (std::holds_alternative<RpcError>(results.back())) history_.refuse(*entry);
+      ++entry;
     }
-    VAT_CHECK(next != prepared.end());
-    const std::variant<CommandEntry, RpcError>& one = *next++;
-    if (const auto* error = std::get_if<RpcError>(&one)) {
-      results.push_back(*error);
-      continue;
-    }
-    VAT_CHECK(entry != entries.end());
-    const auto& action = std::get<CommandEntry>(one).action;
-    results.push_back(execute(*entry, action ? *action : command.command.action));
-    if (std::holds_alternative<RpcError>(results.back())) history_.refuse(*entry);
-    ++entry;
   }
-  VAT_CHECK(results.size() == commands.size());
+  VAT_CHECK(results.size() == batch.items.size());
   return results;
 }
 
@@ -151,12 +154,8 @@ ActionResult SessionCore::act(ParticipantNumber participant, const SessionAction
   }
 }
 
-void SessionCore::end_idle_grabs(SteadyClock::time_point now) {
-  struct IdleGrab {
-    ParticipantNumber participant;
-    std::uint64_t grab;
-    BodyId body;
-  };
+std::vector<SessionCore::IdleGrab> SessionCore::idle_grabs(SteadyClock::time_point now) {
+  VAT_CHECK(context_.owner.allows_this_thread());
   std::vector<IdleGrab> idle;
   for (const auto& [number, holder] : participants_.all()) {
     auto& uses = participants_.find(number)->grab_uses;
@@ -166,14 +165,15 @@ void SessionCore::end_idle_grabs(SteadyClock::time_point now) {
       if (now - used >= environment().limits.grab_idle) idle.push_back({number, grab, body});
     }
   }
-  for (const auto& [number, grab, body] : idle) {
-    const SessionCommand command = environment().methods.make("grab.end", {{"grab", grab}});
-    const ParticipantCommand by_holder{number, command};
-    execute({&by_holder, 1});
-    if (participants_.holder_of(grab) != nullptr) continue;  // not logged; the next check retries
-    const Json event{{"grab", grab}, {"body", body}, {"participant", number}, {"reason", "idle"}};
-    participants_.send_event(write_event("grab.ended", event));
-  }
+  return idle;
+}
+
+void SessionCore::tell_idle_grab(const IdleGrab& idle) {
+  if (participants_.holder_of(idle.grab) != nullptr) return;  // not logged; the next check retries
+  participants_.send_event(write_event("grab.ended", {{"grab", idle.grab},
+                                                      {"body", idle.body},
+                                                      {"participant", idle.participant},
+                                                      {"reason", "idle"}}));
 }
 
 }  // namespace vat

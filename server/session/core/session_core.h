@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -10,6 +11,17 @@
 namespace vat {
 
 class Playback;
+
+/// Commands that are logged and executed together.
+struct CommandBatch {
+  struct Item {
+    ParticipantCommand command;
+    std::optional<SessionAction> action;  ///< if present, replaces the command's action
+    std::optional<RpcError> error;        ///< if present, the command is refused without an entry
+  };
+  std::vector<Item> items;
+  std::vector<LogEntry> entries;  ///< one for each logged command without an error
+};
 
 /// Session without its threads: simulation, clock, participants, history and notifications.
 /// Contains the operations that concern several of these parts. Not thread-safe.
@@ -66,14 +78,25 @@ class SessionCore {
   /// control.step are not timed.
   bool tick(SteadyClock::time_point now, bool timed);
 
-  /// Logs and executes commands between two ticks. Refuses all commands if logging fails.
-  std::vector<ActionResult> execute(std::span<const ParticipantCommand> commands);
+  /// Prepares commands for execution together. The commands must outlive the result.
+  CommandBatch prepare(std::span<const ParticipantCommand> commands) const;
+  /// Executes a batch between two ticks. `entries` are the batch's entries, which have been stored.
+  /// If they could not be stored, refuses the logged commands with `failure`.
+  std::vector<ActionResult> execute(const CommandBatch& batch, std::span<const LogEntry> entries,
+                                    const std::optional<RpcError>& failure = {});
   /// Executes a logged command, either a new command or a command of a replayed log. Adds the
   /// participant if the session does not have it.
   ActionResult execute(const LogEntry& entry, const SessionAction& action);
-  /// Ends each grab without a `grab.move` during the idle time. A grab is a spring by which a
-  /// participant moves a body. Logs each end as a command of the grab's participant.
-  void end_idle_grabs(SteadyClock::time_point now);
+  /// Grab without a `grab.move` during the idle time. A grab is a spring by which a participant
+  /// moves a body.
+  struct IdleGrab {
+    ParticipantNumber participant = 0;
+    std::uint64_t grab = 0;
+    BodyId body = 0;
+  };
+  std::vector<IdleGrab> idle_grabs(SteadyClock::time_point now);
+  /// Sends grab.ended if the grab has ended.
+  void tell_idle_grab(const IdleGrab& idle);
 
  private:
   void start_scene();

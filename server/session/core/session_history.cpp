@@ -1,7 +1,5 @@
 #include "server/session/core/session_history.h"
 
-#include <spdlog/spdlog.h>
-
 #include <utility>
 
 #include "core/support/check.h"
@@ -28,56 +26,34 @@ LogEntry SessionHistory::make_entry(ParticipantNumber participant, std::string_v
           false};
 }
 
-std::optional<RpcError> SessionHistory::append(std::span<LogEntry> entries) {
+void SessionHistory::number(std::span<LogEntry> entries) {
   VAT_CHECK(context_.owner.allows_this_thread());
-  if (entries.empty()) return {};
   if (log_ == nullptr) {
     // Commands of a replay's viewers are not part of the recording.
     const bool counts = context_.playback == nullptr;
     for (std::size_t i = 0; i < entries.size(); ++i) {
       entries[i].sequence = sequence_ + (counts ? 1 + i : 0);
     }
-    return {};
+    return;
   }
-  if (divergence_) {
+  if (divergence_ && !entries.empty()) {
     // The log does not lead to this state. The next entry needs a checkpoint before it.
     sequence_ = log_->last();
     log_->store(moment(), context_.environment->clock.now(), true);
   }
-  try {
-    log_->append(entries);
-  } catch (const StorageError& error) {
-    if (!std::exchange(log_fails_, true)) {
-      spdlog::error("session {}: commands are rejected, because they cannot be logged: {}",
-                    context_.id, error.what());
-    }
-    return storage_failed(error.kind());
-  }
-  if (std::exchange(log_fails_, false)) {
-    spdlog::info("session {}: commands are logged again", context_.id);
-  }
-  return {};
+  log_->number(entries);
+}
+
+std::optional<RpcError> SessionHistory::note_write(std::optional<StorageError::Kind> failure) {
+  VAT_CHECK(context_.owner.allows_this_thread());
+  failing_changed_ = failing_changed_ || failing_.has_value() != failure.has_value();
+  failing_ = failure;
+  if (!failure) return {};
+  return storage_failed(*failure);
 }
 
 void SessionHistory::refuse(const LogEntry& entry) {
-  if (log_ == nullptr) return;
-  try {
-    log_->refuse(entry.sequence);
-  } catch (const StorageError& error) {
-    // A recovery refuses it as well, unless the server's limits have changed.
-    spdlog::error("session {}: entry {}: {}", context_.id, entry.sequence, error.what());
-  }
-}
-
-std::optional<RpcError> SessionHistory::reach() {
-  VAT_CHECK(context_.owner.allows_this_thread());
-  if (log_ == nullptr) return {};
-  try {
-    log_->reach(run_.position());
-    return {};
-  } catch (const StorageError& error) {
-    return storage_failed(error.kind());
-  }
+  if (log_ != nullptr) log_->refuse(entry.sequence);
 }
 
 SessionMoment SessionHistory::moment() const {

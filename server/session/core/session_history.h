@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "server/history/session_log.h"
 #include "server/messages/rpc_message.h"
@@ -43,14 +44,17 @@ class SessionHistory {
 
   LogEntry make_entry(ParticipantNumber participant, std::string_view method,
                       std::string params) const;
-  /// Assigns sequences to the entries, and logs the entries if the session is stored. Returns
-  /// storage_failed if logging fails. The entries must then not be executed.
-  std::optional<RpcError> append(std::span<LogEntry> entries);
+  /// Assigns sequences to the entries, which must be executed next or never. If the session is
+  /// stored, also stores a checkpoint that the entries need.
+  void number(std::span<LogEntry> entries);
+  /// Notes the result of a write to the log. Returns storage_failed if the write failed.
+  std::optional<RpcError> note_write(std::optional<StorageError::Kind> failure);
+  /// Returns the error of the last write, if the write failed.
+  const std::optional<StorageError::Kind>& failing() const { return failing_; }
+  /// Returns true once after each change of failing().
+  bool take_failing_change() { return std::exchange(failing_changed_, false); }
   /// Marks an entry as refused. A refused entry had no effect.
   void refuse(const LogEntry& entry);
-  /// Ensures that a recovery repeats at least the current tick, because a client is informed of the
-  /// tick.
-  std::optional<RpcError> reach();
 
   /// Returns the current state of the session.
   SessionMoment moment() const;
@@ -69,7 +73,8 @@ class SessionHistory {
   std::unique_ptr<SessionLog> log_;
   std::uint64_t sequence_ = 1;        // the first entry contains the scene
   std::uint64_t scene_sequence_ = 1;  // sequence of the entry that loaded the current scene
-  bool log_fails_ = false;
+  std::optional<StorageError::Kind> failing_;
+  bool failing_changed_ = false;
   std::optional<Divergence> divergence_;
 };
 

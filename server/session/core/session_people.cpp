@@ -88,26 +88,43 @@ void SessionPeople::leave(ParticipantNumber number) {
     notifier_.remove_viewer(participant->outbox->id());
   }
   if (participant->resume) context_.environment->tokens.remove(*participant->resume);
+  participants_.disconnect(*participant);
+  participant->away_since = kLongAgo;
+  participant->resume.reset();
   notifier_.mark_status();
-  LogEntry entry = history_.make_entry(number, kLeaveEntry, "{}");
-  if (history_.append({&entry, 1})) {
-    participants_.disconnect(*participant);
-    participant->away_since = kLongAgo;
-    participant->resume.reset();
-    return;
+}
+
+std::vector<LogEntry> SessionPeople::due_entries(SteadyClock::time_point now) const {
+  VAT_CHECK(context_.owner.allows_this_thread());
+  std::vector<LogEntry> entries;
+  for (const auto& [number, participant] : participants_.all()) {
+    const bool is_gone = participant.is_away() &&
+                         now - *participant.away_since >= context_.environment->limits.resume_time;
+    if (is_gone) {
+      entries.push_back(history_.make_entry(number, kLeaveEntry, "{}"));
+    } else if (participant.role < Role::controller && !participant.grabs.empty()) {
+      entries.push_back(history_.make_entry(number, kReleaseGrabsEntry, "{}"));
+    }
   }
-  execute_leave(entry);
+  return entries;
+}
+
+void SessionPeople::execute(std::span<const LogEntry> entries) {
+  for (const LogEntry& entry : entries) {
+    const bool is_departure = entry.method == kLeaveEntry;
+    VAT_CHECK(is_departure || entry.method == kReleaseGrabsEntry);
+    if (is_departure) {
+      execute_leave(entry);
+    } else {
+      execute_release(entry);
+    }
+  }
+  notifier_.mark_status();
 }
 
 void SessionPeople::execute_leave(const LogEntry& entry) {
   execute_release(entry);
   participants_.remove(entry.participant);
-}
-
-void SessionPeople::release_grabs(const Participant& participant) {
-  if (participant.grabs.empty()) return;
-  LogEntry entry = history_.make_entry(participant.number, kReleaseGrabsEntry, "{}");
-  if (!history_.append({&entry, 1})) execute_release(entry);
 }
 
 void SessionPeople::execute_release(const LogEntry& entry) {
@@ -145,13 +162,9 @@ void SessionPeople::set_role(Participant& participant, Role role) {
     }
   }
   participants_.set_role(participant, role);
-  if (role < Role::controller) release_grabs(participant);
 }
 
 void SessionPeople::configure(SessionSettings settings) {
-  if (SessionLog* const log = history_.log()) {
-    log->configure(settings.name, write_settings(settings).dump());
-  }
   context_.settings = std::move(settings);
   participants_.send_event(write_event("session.configured", describe_settings()));
 }
@@ -161,19 +174,6 @@ Json SessionPeople::describe_settings() const {
   return {{"name", settings.name},
           {"default_role", to_string(settings.default_role)},
           {"locked", settings.is_locked}};
-}
-
-void SessionPeople::end_absences(SteadyClock::time_point now) {
-  std::vector<ParticipantNumber> expired;
-  for (const auto& [number, participant] : participants_.all()) {
-    // Tries again if an earlier release could not be logged.
-    if (participant.role < Role::controller) release_grabs(participant);
-    if (!participant.is_away()) continue;
-    if (now - *participant.away_since >= context_.environment->limits.resume_time) {
-      expired.push_back(number);
-    }
-  }
-  for (const ParticipantNumber number : expired) leave(number);
 }
 
 void SessionPeople::bound_absences() {

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "server/session/core/session_history.h"
 #include "server/session/core/session_notifier.h"
@@ -25,8 +27,8 @@ struct JoinedParticipant {
   bool resumed = false;
 };
 
-/// Management of a session's participants: joining, leaving and roles. Logs departures and ends of
-/// grabs. Not thread-safe.
+/// Management of a session's participants: joining, leaving and roles. Departures and ends of grabs
+/// take effect after their log entries are stored, see due_entries(). Not thread-safe.
 class SessionPeople {
  public:
   SessionPeople(SessionContext& context, SessionRun& run, Participants& participants,
@@ -41,9 +43,14 @@ class SessionPeople {
   /// Marks the connection's participant, if any, as away. The participant can be resumed for a
   /// limited time.
   void disconnect(ConnectionId client, SteadyClock::time_point now);
-  /// Ends the participant's grabs and removes the participant. If logging fails, marks the
-  /// participant as away and removes it later.
+  /// Ends the participant's connection to the session. The participant cannot be resumed. The next
+  /// due_entries() contain its departure.
   void leave(ParticipantNumber number);
+  /// Returns the log entries of departures and of ends of grabs that are due: participants that
+  /// have left or were away longer than the resume time, and viewers with grabs.
+  std::vector<LogEntry> due_entries(SteadyClock::time_point now) const;
+  /// Executes the stored entries of due_entries().
+  void execute(std::span<const LogEntry> entries);
   /// Executes a log entry with the method kLeaveEntry.
   void execute_leave(const LogEntry& entry);
   /// Executes a log entry with the method kReleaseGrabsEntry.
@@ -51,15 +58,13 @@ class SessionPeople {
   /// Removes the participant and closes its connection with `reason`.
   void kick(ParticipantNumber number, const std::string& reason);
   void rename(Participant& participant, std::string name);
-  /// Sets the role of a participant. A participant that becomes a viewer loses its grabs. A new
-  /// owner replaces the current owner, who becomes a controller.
+  /// Sets the role of a participant. A participant that becomes a viewer loses its grabs by the
+  /// next due_entries(). A new owner replaces the current owner, who becomes a controller.
   void set_role(Participant& participant, Role role);
-  /// Stores and applies the settings, and sends session.configured.
+  /// Applies the settings, and sends session.configured.
   void configure(SessionSettings settings);
   const SessionSettings& settings() const { return context_.settings; }
   Json describe_settings() const;
-  /// Removes participants that were away longer than the resume time.
-  void end_absences(SteadyClock::time_point now);
   /// Marks all participants as away after a recovery. Removes participants without a resume token.
   void recover(SteadyClock::time_point now);
 
@@ -68,7 +73,6 @@ class SessionPeople {
   void release_connection(const Participant& participant, ConnectionId next);
   /// Limits the number of absent participants by removing the longest absent participant.
   void bound_absences();
-  void release_grabs(const Participant& participant);
 
   SessionContext& context_;
   SessionRun& run_;

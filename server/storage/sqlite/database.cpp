@@ -65,7 +65,7 @@ void Database::execute(const char* sql) {
 
 void Database::roll_back() noexcept {
   // Some failures, such as a full disk, have rolled back already.
-  if (sqlite3_get_autocommit(connection_.get()) != 0) return;
+  if (!is_in_transaction()) return;
   sqlite3_exec(connection_.get(), "ROLLBACK", nullptr, nullptr, nullptr);
 }
 
@@ -85,10 +85,14 @@ std::int64_t Database::last_row() const {
   return sqlite3_last_insert_rowid(connection_.get());
 }
 
-void Database::use_log() {
-  execute(
-      "PRAGMA journal_mode = WAL; PRAGMA synchronous = NORMAL; PRAGMA wal_autocheckpoint = 0;"
-      "PRAGMA temp_store = MEMORY");
+bool Database::is_in_transaction() const {
+  return sqlite3_get_autocommit(connection_.get()) == 0;
+}
+
+void Database::use_log(Durability durability) {
+  execute("PRAGMA journal_mode = WAL; PRAGMA wal_autocheckpoint = 0; PRAGMA temp_store = MEMORY");
+  execute(durability == Durability::power ? "PRAGMA synchronous = FULL"
+                                          : "PRAGMA synchronous = NORMAL");
 }
 
 std::size_t Database::move_log(bool wait) {
@@ -195,17 +199,19 @@ void Statement::reset() {
   sqlite3_clear_bindings(statement_.get());
 }
 
-Transaction::Transaction(Database& database) : database_(database) {
-  database_.execute("BEGIN IMMEDIATE");
+Transaction::Transaction(Database& database)
+    : database_(database), is_part_(database.is_in_transaction()) {
+  database_.execute(is_part_ ? "SAVEPOINT part" : "BEGIN IMMEDIATE");
 }
 
 Transaction::~Transaction() {
-  if (open_) database_.roll_back();
+  // The owner of the open transaction rolls back its parts.
+  if (open_ && !is_part_) database_.roll_back();
 }
 
 void Transaction::commit() {
   VAT_CHECK(open_);
-  database_.execute("COMMIT");
+  database_.execute(is_part_ ? "RELEASE part" : "COMMIT");
   open_ = false;
 }
 

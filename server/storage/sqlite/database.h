@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "server/storage/sqlite/durability.h"
 #include "server/storage/sqlite/storage_error.h"
 
 struct sqlite3;
@@ -40,12 +41,15 @@ class Database {
   /// Rolls back the current transaction, if any.
   void roll_back() noexcept;
 
-  /// Uses a write-ahead log, which survives a crash of the process at any moment. Only move_log()
-  /// copies the log into the database file.
-  void use_log();
+  bool is_in_transaction() const;
+
+  /// Uses a write-ahead log. Only move_log() copies the log into the database file. With
+  /// Durability::power, the end of each transaction synchronises the log with the disk.
+  void use_log(Durability durability);
   /// Runs an SQLite checkpoint: copies log pages into the database file, except pages that a reader
-  /// still needs. If `wait` is true, blocks writers and restarts the log from its beginning.
-  /// Returns the size of the log [bytes].
+  /// still needs. Synchronises both files, so that all earlier transactions survive a power
+  /// failure. If `wait` is true, blocks writers and restarts the log from its beginning. Returns
+  /// the size of the log [bytes].
   std::size_t move_log(bool wait);
 
  private:
@@ -96,7 +100,8 @@ class Statement {
   std::unique_ptr<sqlite3_stmt, Finalize> statement_;
 };
 
-/// Transaction of a database. Without commit(), none of the writes is stored.
+/// Transaction of a database, or a part of an open transaction. Without commit(), none of its
+/// writes is stored. The writes of a part are stored with the open transaction.
 class Transaction {
  public:
   explicit Transaction(Database& database);
@@ -107,6 +112,7 @@ class Transaction {
 
  private:
   Database& database_;
+  const bool is_part_;
   bool open_ = true;
 };
 

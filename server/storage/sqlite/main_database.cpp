@@ -61,7 +61,7 @@ CREATE INDEX scenes_by_address ON scenes (address, bytes);
 
 }  // namespace
 
-MainDatabase::MainDatabase(const std::string& path)
-    : database(open_database(path, {kMainApplication, kMainSteps})) {}
+MainDatabase::MainDatabase(const std::string& path, Durability durability)
+    : database(open_database(path, {kMainApplication, kMainSteps}, durability)) {}
 
 }  // namespace vat

@@ -45,11 +45,11 @@ void migrate(Database& database, const Schema& schema) {
 
 }  // namespace
 
-Database open_database(const std::string& path, const Schema& schema) {
+Database open_database(const std::string& path, const Schema& schema, Durability durability) {
   std::error_code missing;
   if (std::filesystem::file_size(path, missing) > 0 && !missing) inspect(path, schema);
   Database database(path, Database::Mode::create);
-  database.use_log();
+  database.use_log(durability);
   migrate(database, schema);
   return database;
 }

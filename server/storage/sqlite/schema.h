@@ -19,6 +19,6 @@ struct Schema {
 /// Opens a database of the current version. Creates a missing file, and upgrades an older version
 /// in one transaction. Throws StorageError for a damaged, newer or unknown file, and does not
 /// change the file.
-Database open_database(const std::string& path, const Schema& schema);
+Database open_database(const std::string& path, const Schema& schema, Durability durability);
 
 }  // namespace vat

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <array>
 #include <stdexcept>
 #include <string>
+
+#include "core/support/names.h"
 
 namespace vat {
 
@@ -23,5 +26,8 @@ class StorageError : public std::runtime_error {
  private:
   Kind kind_;
 };
+template <>
+inline constexpr std::array kNamesOf<StorageError::Kind>{"full",  "read_only", "corrupt",
+                                                         "newer", "locked",    "failed"};
 
 }  // namespace vat

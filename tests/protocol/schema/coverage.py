@@ -13,8 +13,8 @@ import schemas
 LEAST_SCRIPTS = 40
 # Error kinds and events that a client cannot cause, and the end of the server.
 NOT_SHOWN = {
-    "internal_error", "storage_failed", "not_recovered", "session.diverged", "server.draining",
-    "server.drain",
+    "internal_error", "storage_failed", "not_recovered", "session.diverged", "session.storage",
+    "server.draining", "server.drain",
 }
 # Limits that apply before a WebSocket is open or below its messages.
 BELOW_MESSAGES = {"handshake_seconds", "ping_seconds"}

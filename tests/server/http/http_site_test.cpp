@@ -91,10 +91,11 @@ class HttpSite : public testing::Test {
   HttpHandler make_site(const fs::path& dist) {
     Result<StaticFiles> files = StaticFiles::read(dist);
     EXPECT_TRUE(files.ok());
-    return make_http_site(std::move(files).value(),
-                          {[] { return "vat_threads 4\n"; },
-                           [](std::string_view authorization) { return authorization != "wrong"; },
-                           [this] { return phase; }, R"({"version":"1.2.3"})"});
+    return make_http_site(
+        std::move(files).value(),
+        {[] { return "vat_threads 4\n"; },
+         [](std::string_view authorization) { return authorization != "wrong"; },
+         [this] { return phase; }, [] { return R"({"status":"ok"})"; }, R"({"version":"1.2.3"})"});
   }
 
   const TemporaryFolder folder;
@@ -299,7 +300,7 @@ class ServedSite : public TransportTest {};
 TEST_F(ServedSite, PassesTheHealthCheckOfTheImage) {
   http_handler = make_http_site(StaticFiles::read("/none").value(),
                                 {[] { return ""; }, [](std::string_view) { return true; },
-                                 [] { return ServerPhase::ready; }, "{}"});
+                                 [] { return ServerPhase::ready; }, [] { return "{}"; }, "{}"});
   start();
   std::ifstream file(VAT_SOURCE_DIR "/docker/Dockerfile");
   std::ostringstream text;

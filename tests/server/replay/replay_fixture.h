@@ -21,7 +21,7 @@ inline const std::atomic<bool> kGoOn = false;
 /// A server that stores its one session, and the environment of a replay outside the server.
 class ReplayTest : public testing::Test {
  protected:
-  explicit ReplayTest(const ServerLimits& limits = {}, const StorageLimits& storage = {})
+  explicit ReplayTest(const ServerLimits& limits = {}, const StorageSettings& storage = {})
       : catalogue_(make_catalogue()), server_(catalogue_, settings(limits, storage)) {
     EXPECT_TRUE(server_.create_session("first", to_scene(mixed_scene_text())).ok());
     client_.emplace(server_, 1);
@@ -130,7 +130,7 @@ class ReplayTest : public testing::Test {
   };
 
  private:
-  ServerSettings settings(const ServerLimits& limits, const StorageLimits& storage) const {
+  ServerSettings settings(const ServerLimits& limits, const StorageSettings& storage) const {
     ServerSettings settings = test_settings(limits, folder_.file("data"));
     settings.storage = storage;
     return settings;

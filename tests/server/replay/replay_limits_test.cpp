@@ -36,8 +36,8 @@ class LongRecordings : public ReplayTest {
   LongRecordings()
       : ReplayTest(limits_with(&ServerLimits::max_recording_bytes, kFewBytes), rare_checkpoints()) {
   }
-  static StorageLimits rare_checkpoints() {
-    StorageLimits limits;
+  static StorageSettings rare_checkpoints() {
+    StorageSettings limits;
     limits.checkpoint_after = std::chrono::hours(1);
     return limits;
   }
@@ -56,8 +56,8 @@ TEST_F(LongRecordings, CountTheHashOfEachTick) {
 class ShortenedLog : public ReplayTest, public testing::WithParamInterface<bool> {
  protected:
   ShortenedLog() : ReplayTest(unhurried_limits(), short_logs()) {}
-  static StorageLimits short_logs() {
-    StorageLimits limits;
+  static StorageSettings short_logs() {
+    StorageSettings limits;
     limits.log_bytes = GetParam() ? 12'000 : 1000;  // the scene takes 1500 bytes
     limits.checkpoint_after = std::chrono::milliseconds(1);
     return limits;

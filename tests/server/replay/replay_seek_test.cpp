@@ -26,8 +26,8 @@ constexpr std::chrono::seconds kWanted{1};
 // The maximum work between two checkpoints, and the tick that exceeds it.
 constexpr auto kMaxTicks = static_cast<std::uint64_t>(1 / kTickWork) + 1;
 
-StorageLimits limits_with(std::size_t checkpoint_bytes) {
-  StorageLimits limits;
+StorageSettings limits_with(std::size_t checkpoint_bytes) {
+  StorageSettings limits;
   limits.checkpoint_after = kWanted;
   limits.checkpoint_bytes = checkpoint_bytes;
   return limits;
@@ -64,7 +64,10 @@ class KeptSession {
  private:
   static void command(SessionCore& core) {
     LogEntry entry{0, core.run().position(), core.run().tick(), 1, "leave", "{}", false};
-    core.history().log()->append({&entry, 1});
+    SessionLog& log = *core.history().log();
+    log.number({&entry, 1});
+    log.append({entry}, [](auto failure) { EXPECT_FALSE(failure); });
+    log.confirm(1);
     core.execute(entry, [](SessionCore&, Participant&) -> ActionResult { return Json::object(); });
   }
   void run_tick(SessionCore& core) {

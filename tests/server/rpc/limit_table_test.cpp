@@ -149,7 +149,7 @@ TEST(LimitTable, ServerInfoTellsWhatTheSettingsSay) {
   std::map<std::string, double> chosen;
   for (std::size_t i = 0; i < table.size(); ++i) {
     if (!table[i].is_number || kOtherGroups.contains(table[i].group)) continue;
-    const Json value = to_json(table[i], to_text(chosen_value(table[i], i)));
+    const Json value = to_json(table[i], to_text(chosen_value(table[i], chosen.size())));
     ASSERT_EQ(table[i].find_fault(value), "") << table[i].name;
     table[i].assign(value);
     chosen[table[i].name] = value;

@@ -203,7 +203,7 @@ TEST_F(SessionReadsTest, AreAllMethodsWithALongResult) {
   for (const auto& [name, params] : methods) {
     const SessionCommand command = environment.shared.methods.make(name, params);
     const ParticipantCommand by_participant{participant.number, command};
-    const auto results = core.execute({&by_participant, 1});
+    const auto results = core.execute(core.prepare({&by_participant, 1}), {});
     ASSERT_TRUE(std::holds_alternative<Read>(results.front())) << name;
     const Read& read = std::get<Read>(results.front());
     SessionView view(std::as_const(core).run(), read.needs_state);
@@ -217,7 +217,7 @@ TEST_F(SessionReadsTest, DifferIfTheirCopiedValuesDiffer) {
     const SessionCommand command =
         environment.shared.methods.make("session.stats", {{"diagnostics", true}});
     const ParticipantCommand by_participant{1, command};
-    return std::get<Read>(core.execute({&by_participant, 1}).front()).copied;
+    return std::get<Read>(core.execute(core.prepare({&by_participant, 1}), {}).front()).copied;
   };
   const std::string before = copied();
   EXPECT_EQ(copied(), before);

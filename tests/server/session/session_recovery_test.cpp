@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 class Life {
  public:
   Life(const Catalogue& catalogue, const std::string& folder, ManualClock& clock,
-       ServerLimits limits = {}, StorageLimits storage = {})
+       ServerLimits limits = {}, StorageSettings storage = {})
       : server_(catalogue, with_storage(test_settings(limits, folder), storage), clock),
         recovered(server_.recover()) {
     if (recovered == 0 && !server_.create_session("first", to_scene(mixed_scene_text()))) {
@@ -40,7 +40,7 @@ class Life {
   void flush() { server_.flush(); }
 
  private:
-  static ServerSettings with_storage(ServerSettings settings, const StorageLimits& storage) {
+  static ServerSettings with_storage(ServerSettings settings, const StorageSettings& storage) {
     settings.storage = storage;
     return settings;
   }
@@ -84,7 +84,7 @@ class SessionRecoveryTest : public testing::Test {
   const TemporaryFolder folder;
   const Catalogue catalogue;
   ManualClock clock;
-  StorageLimits storage;
+  StorageSettings storage;
   std::string data = folder.file("data0");
   std::optional<Life> life;
 

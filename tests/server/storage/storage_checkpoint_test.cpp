@@ -239,17 +239,19 @@ class BoundedLog : public testing::Test {
     session.settings = "{}";
     number = storage.sessions().create(session, {1, 0, 0, 0, "scene.load", "{}", false});
   }
-  static StorageLimits few_bytes() {
-    StorageLimits limits;
+  static StorageSettings few_bytes() {
+    StorageSettings limits;
     limits.log_bytes = 1000;
     return limits;
   }
   /// Appends commands of 100 bytes each.
   void append(SessionLog& log, int count) {
     for (int i = 0; i < count; ++i) {
-      LogEntry entry{0, 5, 5, 1, "world.set_gravity", std::string(100, ' '), false};
-      log.append({&entry, 1});
+      log.append({{log.last() + 1, 5, 5, 1, "world.set_gravity", std::string(100, ' '), false}},
+                 [](auto failure) { EXPECT_FALSE(failure); });
+      log.confirm(1);
     }
+    storage.flush();
   }
   void keep(SessionLog& log, std::uint64_t loaded) {
     log.store({.position = 5,

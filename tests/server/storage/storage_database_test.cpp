@@ -34,7 +34,7 @@ std::string content_of(const std::string& path) {
 /// Returns the kind of the error of opening. Fails the test if there is no error.
 StorageError::Kind refusal(const std::string& path, const Schema& schema) {
   try {
-    open_database(path, schema);
+    open_database(path, schema, Durability::process);
   } catch (const StorageError& error) {
     EXPECT_NE(std::string(error.what()).find(path), std::string::npos) << error.what();
     return error.kind();
@@ -46,7 +46,7 @@ StorageError::Kind refusal(const std::string& path, const Schema& schema) {
 class StorageDatabase : public testing::Test {
  protected:
   void make_old() {
-    Database database = open_database(path, {kApplication, kOld});
+    Database database = open_database(path, {kApplication, kOld}, Durability::process);
     database.execute("INSERT INTO things VALUES ('one'), ('two')");
   }
   test::TemporaryFolder folder;
@@ -55,7 +55,7 @@ class StorageDatabase : public testing::Test {
 
 TEST_F(StorageDatabase, OlderOnesAreBroughtUpToDateWithWhatTheyHold) {
   make_old();
-  Database database = open_database(path, {kApplication, kNew});
+  Database database = open_database(path, {kApplication, kNew}, Durability::process);
   EXPECT_EQ(database.number("PRAGMA user_version"), 2);
   EXPECT_EQ(database.number("SELECT count(*) FROM things WHERE size = 5"), 2);
 }
@@ -64,21 +64,21 @@ TEST_F(StorageDatabase, AMigrationThatFailsLeavesTheOldOne) {
   make_old();
   constexpr const char* kBroken[] = {kNew[0], "ALTER TABLE things RENAME TO items",
                                      "INSERT INTO nothing VALUES (1)"};
-  EXPECT_THROW(open_database(path, {kApplication, kBroken}), StorageError);
-  Database database = open_database(path, {kApplication, kOld});
+  EXPECT_THROW(open_database(path, {kApplication, kBroken}, Durability::process), StorageError);
+  Database database = open_database(path, {kApplication, kOld}, Durability::process);
   EXPECT_EQ(database.number("PRAGMA user_version"), 1);
   EXPECT_EQ(database.number("SELECT count(*) FROM things"), 2);
 }
 
 TEST_F(StorageDatabase, ANewerOneIsRefusedAndStaysAsItIs) {
-  open_database(path, {kApplication, kNew});
+  open_database(path, {kApplication, kNew}, Durability::process);
   const std::string before = content_of(path);
   EXPECT_EQ(refusal(path, {kApplication, kOld}), StorageError::Kind::newer);
   EXPECT_EQ(content_of(path), before);
 }
 
 TEST_F(StorageDatabase, AnotherProgramsIsRefused) {
-  open_database(path, {kApplication + 1, kOld});
+  open_database(path, {kApplication + 1, kOld}, Durability::process);
   EXPECT_EQ(refusal(path, {kApplication, kOld}), StorageError::Kind::corrupt);
 }
 
@@ -91,7 +91,7 @@ TEST_F(StorageDatabase, GarbageIsRefusedAndStaysAsItIs) {
 
 TEST_F(StorageDatabase, ADamagedPageIsFoundBeforeAnythingIsWritten) {
   {
-    Database database = open_database(path, {kApplication, kOld});
+    Database database = open_database(path, {kApplication, kOld}, Durability::process);
     Transaction transaction(database);
     Statement insert = database.prepare("INSERT INTO things VALUES (?)");
     for (int i = 0; i < 1000; ++i) insert.bind(0, std::string_view("a name of some length")).run();
@@ -112,7 +112,7 @@ TEST_F(StorageDatabase, AFileThatEndsEarlyIsFound) {
 }
 
 TEST_F(StorageDatabase, WhatIsNotCommittedLeavesNothing) {
-  Database database = open_database(path, {kApplication, kOld});
+  Database database = open_database(path, {kApplication, kOld}, Durability::process);
   {
     Transaction transaction(database);
     database.execute("INSERT INTO things VALUES ('lost')");
@@ -125,7 +125,7 @@ TEST_F(StorageDatabase, WhatIsNotCommittedLeavesNothing) {
 }
 
 TEST_F(StorageDatabase, AFullDiskUndoesTheTransactionAndIsToldByItsKind) {
-  Database database = open_database(path, {kApplication, kOld});
+  Database database = open_database(path, {kApplication, kOld}, Durability::process);
   database.number("PRAGMA max_page_count = 8");
   const std::string long_name(10'000, 'n');
   auto kind = StorageError::Kind::failed;

@@ -27,6 +27,13 @@ export function eventInWords(
         level: 'error',
         text: `The restored session differs from its log and is paused: ${params.reason}. Reset it, or choose a scene.`,
       };
+    case 'session.storage':
+      return params.failing
+        ? {
+            level: 'error',
+            text: 'The server cannot store changes of this session, and rejects them.',
+          }
+        : { level: 'info', text: 'The server stores changes of this session again.' };
     case 'grab.ended': // the marker disappears with the grab
     case 'session.description': // reported separately
     case 'session.status':

@@ -3,10 +3,13 @@
 #include <chrono>
 #include <cstddef>
 
+#include "server/storage/sqlite/durability.h"
+
 namespace vat {
 
-/// Limits of a session's stored data.
-struct StorageLimits {
+/// Durability of a server's stored data, and limits of a session's stored data.
+struct StorageSettings {
+  Durability durability = Durability::power;
   /// Size of all checkpoints [bytes]. Sufficient for five minutes of some thousand particles
   /// without thinning.
   std::size_t checkpoint_bytes = std::size_t{128} << 20;
