@@ -33,7 +33,7 @@ export function eventInWords(
             level: 'error',
             text: 'The server cannot store changes of this session, and rejects them.',
           }
-        : { level: 'info', text: 'The server stores changes of this session again.' };
+        : { level: 'warning', text: 'The server stores changes of this session again.' };
     case 'grab.ended': // the marker disappears with the grab
     case 'session.description': // reported separately
     case 'session.status':
