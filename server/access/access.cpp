@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "server/storage/journal.h"
 #include "server/storage/token_store.h"
 #include "server/support/header_text.h"
 
@@ -30,12 +31,13 @@ bool may_read_metrics(const AccessSettings& settings, std::string_view authoriza
   return is_given(settings.metrics) || is_given(settings.admin);
 }
 
-void AccessTokens::keep_in(TokenStore& store) {
+void AccessTokens::keep_in(TokenStore& store, Journal& journal) {
   const auto now = clock_.now();
   const double wall = clock_.wall_time();
   store.remove_old(wall);
   const std::lock_guard lock(mutex_);
   store_ = &store;
+  journal_ = &journal;
   for (StoredToken& token : store.all()) {
     const auto left = std::chrono::duration_cast<SteadyClock::duration>(Seconds(token.ends - wall));
     Grant grant{read_role(token.role), std::move(token.session), true};
@@ -44,20 +46,35 @@ void AccessTokens::keep_in(TokenStore& store) {
   }
 }
 
-std::optional<std::string> AccessTokens::issue(Grant grant, std::optional<std::size_t> uses,
-                                               std::chrono::seconds time) {
-  std::string token = make_token();
-  const TokenHash hash = hash_of_token(token);
+template <class Write>
+void AccessTokens::write(Write write) {
+  if (store_ == nullptr) return;
+  journal_->post([store = store_, write = std::move(write)] { write(*store); });
+}
+
+bool AccessTokens::insert(const TokenHash& hash, ValidToken token) {
   const std::lock_guard lock(mutex_);
   if (issued_ >= max_issued_) remove_old();
-  if (issued_ >= max_issued_) return {};
-  if (store_ != nullptr) {
-    const double ends = clock_.wall_time() + Seconds(time).count();
-    store_->add({hash, to_string(grant.role), grant.session, uses, ends});
-  }
-  entries_.insert_or_assign(hash, ValidToken{std::move(grant), uses, clock_.now() + time});
+  if (issued_ >= max_issued_) return false;
+  entries_.insert_or_assign(hash, std::move(token));
   ++issued_;
-  return token;
+  return true;
+}
+
+void AccessTokens::issue(Grant grant, std::optional<std::size_t> uses, std::chrono::seconds time,
+                         std::function<void(Issued)> done) {
+  std::string token = make_token();
+  const TokenHash hash = hash_of_token(token);
+  if (!insert(hash, ValidToken{grant, uses, clock_.now() + time})) return done({});
+  if (store_ == nullptr) return done({std::move(token), {}});
+  const StoredToken stored{hash, to_string(grant.role), grant.session, uses,
+                           clock_.wall_time() + Seconds(time).count()};
+  journal_->post([store = store_, stored] { store->add(stored); },
+                 [this, hash, token = std::move(token), done = std::move(done)](auto failure) {
+                   if (!failure) return done({token, {}});
+                   remove(hash);
+                   done({{}, failure});
+                 });
 }
 
 void AccessTokens::add(const TokenHash& token, Grant grant) {
@@ -67,6 +84,10 @@ void AccessTokens::add(const TokenHash& token, Grant grant) {
 
 void AccessTokens::remove(const TokenHash& token) {
   const std::lock_guard lock(mutex_);
+  erase(token);
+}
+
+void AccessTokens::erase(const TokenHash& token) {
   const auto found = entries_.find(token);
   if (found == entries_.end()) return;
   if (found->second.end) --issued_;
@@ -75,7 +96,7 @@ void AccessTokens::remove(const TokenHash& token) {
 
 void AccessTokens::remove_session(const std::string& session, bool comes_back) {
   const std::lock_guard lock(mutex_);
-  if (store_ != nullptr && !comes_back) store_->remove_session(session);
+  if (!comes_back) write([session](TokenStore& store) { store.remove_session(session); });
   std::erase_if(entries_, [&](const auto& entry) {
     const bool is_of_it = entry.second.grant.session == session;
     if (is_of_it && entry.second.end) --issued_;
@@ -83,30 +104,44 @@ void AccessTokens::remove_session(const std::string& session, bool comes_back) {
   });
 }
 
-std::optional<Grant> AccessTokens::use(const TokenHash& token) {
+std::optional<AccessTokens::Use> AccessTokens::use(const TokenHash& token) {
   const std::lock_guard lock(mutex_);
   const auto found = entries_.find(token);
   if (found == entries_.end()) return {};
   ValidToken& entry = found->second;
   if (entry.end && *entry.end <= clock_.now()) return {};
-  Grant grant = entry.grant;
-  if (entry.uses) count_use(token, entry);
-  return grant;
+  if (entry.uses) --*entry.uses;
+  Use use{entry.grant, entry.uses, entry.end};
+  if (use.uses_left == std::size_t{0}) erase(token);
+  return use;
 }
 
-void AccessTokens::count_use(const TokenHash& token, ValidToken& entry) {
-  const std::size_t left = *entry.uses - 1;
-  // First, so that a use counts even if the server ends meanwhile.
-  if (store_ != nullptr && left > 0) store_->set_uses(token, left);
-  if (store_ != nullptr && left == 0) store_->remove(token);
-  entry.uses = left;
-  if (left > 0) return;
-  entries_.erase(token);
-  --issued_;
+void AccessTokens::store_use(const TokenHash& token, const Use& use,
+                             std::function<void(std::optional<StorageError::Kind>)> done) {
+  if (store_ == nullptr || !use.uses_left) return done({});
+  journal_->post(
+      [store = store_, token, left = *use.uses_left] {
+        if (left > 0) {
+          store->set_uses(token, left);
+        } else {
+          store->remove(token);
+        }
+      },
+      [this, token, use, done = std::move(done)](auto failure) {
+        if (failure) undo(token, use);
+        done(failure);
+      });
+}
+
+void AccessTokens::undo(const TokenHash& token, const Use& use) {
+  const std::lock_guard lock(mutex_);
+  const auto [entry, is_new] = entries_.try_emplace(token, ValidToken{use.grant, 0, use.end});
+  ++*entry->second.uses;
+  if (is_new) ++issued_;
 }
 
 void AccessTokens::remove_old() {
-  if (store_ != nullptr) store_->remove_old(clock_.wall_time());
+  write([now = clock_.wall_time()](TokenStore& store) { store.remove_old(now); });
   const auto now = clock_.now();
   std::erase_if(entries_, [&](const auto& entry) {
     const bool is_old = entry.second.end && *entry.second.end <= now;

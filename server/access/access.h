@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -10,10 +11,12 @@
 
 #include "server/access/role.h"
 #include "server/access/token.h"
+#include "server/storage/sqlite/storage_error.h"
 #include "server/support/clock.h"
 
 namespace vat {
 
+class Journal;
 class TokenStore;
 
 enum class AccessMode {
@@ -54,23 +57,39 @@ class AccessTokens {
   AccessTokens(std::size_t max_issued, const Clock& clock)
       : max_issued_(max_issued), clock_(clock) {}
 
-  /// Loads the tokens of the store, and stores all tokens that are issued later. All functions that
-  /// change stored tokens throw StorageError if the store cannot be written. A function that throws
-  /// has no effect.
-  void keep_in(TokenStore& store);
+  /// Loads the tokens of the store, and stores all later changes by the journal. Throws
+  /// StorageError.
+  void keep_in(TokenStore& store, Journal& journal);
 
-  /// Returns a new token, valid for `uses` uses (absent: unlimited) and for `time`. Returns nothing
-  /// if there are too many tokens.
-  std::optional<std::string> issue(Grant grant, std::optional<std::size_t> uses,
-                                   std::chrono::seconds time);
+  /// A new token, or the reason why there is none.
+  struct Issued {
+    std::optional<std::string> token;           ///< absent: too many tokens, or a failure
+    std::optional<StorageError::Kind> failure;  ///< the token could not be stored
+  };
+  /// Calls `done` with a new token, valid for `uses` uses (absent: unlimited) and for `time`. If
+  /// tokens are stored, calls `done` on the journal's thread, otherwise before it returns.
+  void issue(Grant grant, std::optional<std::size_t> uses, std::chrono::seconds time,
+             std::function<void(Issued)> done);
   /// Adds a token without expiry. The caller must remove it.
   void add(const TokenHash& token, Grant grant);
   void remove(const TokenHash& token);
   /// Removes the session's tokens. If `comes_back` is true (the session will be restored), the
   /// store retains the issued tokens.
   void remove_session(const std::string& session, bool comes_back);
-  /// Returns the token's grant and counts the use, or returns nothing if the token is invalid.
-  std::optional<Grant> use(const TokenHash& token);
+  /// Use of a token.
+  struct Use {
+    Grant grant;
+    std::optional<std::size_t> uses_left;        ///< absent: unlimited
+    std::optional<SteadyClock::time_point> end;  ///< time of expiry; absent: token of add()
+  };
+  /// Returns the token's grant and counts the use, or returns nothing if the token is invalid. The
+  /// caller must then call store_use().
+  std::optional<Use> use(const TokenHash& token);
+  /// Stores the use, so that the use counts even if the server ends. Calls `done` on the journal's
+  /// thread, or before it returns if there is nothing to store. After a failure, the use does not
+  /// count.
+  void store_use(const TokenHash& token, const Use& use,
+                 std::function<void(std::optional<StorageError::Kind>)> done);
 
  private:
   struct ValidToken {
@@ -79,7 +98,13 @@ class AccessTokens {
     std::optional<SteadyClock::time_point> end;  // time of expiry; absent: token of add()
   };
   void remove_old();
-  void count_use(const TokenHash& token, ValidToken& entry);
+  /// Adds an issued token. Returns false if there are too many.
+  bool insert(const TokenHash& hash, ValidToken token);
+  void erase(const TokenHash& token);
+  void undo(const TokenHash& token, const Use& use);
+  /// Writes to the store in the background, if there is one. The caller must hold the mutex.
+  template <class Write>
+  void write(Write write);
 
   const std::size_t max_issued_;
   const Clock& clock_;
@@ -89,6 +114,7 @@ class AccessTokens {
   std::map<TokenHash, ValidToken> entries_;
   std::size_t issued_ = 0;
   TokenStore* store_ = nullptr;  // null: tokens are not stored
+  Journal* journal_ = nullptr;
 };
 
 }  // namespace vat

@@ -29,25 +29,34 @@ void AccessControl::start(Client& client) {
   }
 }
 
-std::optional<Grant> AccessControl::find_grant(std::string_view token) {
-  const TokenHash hash = hash_of_token(token);
+std::optional<AccessTokens::Use> AccessControl::use_token(const TokenHash& token) {
   const auto& admin = resources_.settings.access.admin;
-  if (admin && are_same(*admin, hash)) return Grant{Role::admin, {}, true};
-  return resources_.tokens.use(hash);
+  if (admin && are_same(*admin, token)) return AccessTokens::Use{{Role::admin, {}, true}, {}, {}};
+  return resources_.tokens.use(token);
 }
 
 std::optional<RpcResult> AccessControl::enter(PendingReply& reply, std::string_view token) {
   const AccessSettings& access = resources_.settings.access;
+  const TokenHash hash = hash_of_token(token);
   const std::lock_guard lock(tables_.mutex);
   Client* const client = tables_.clients.find(reply);
   if (client == nullptr) return not_allowed("the connection is closed");
   // After too many wrong tokens even a valid one is refused, also while the refusals are delayed.
   const bool may_try = client->wrong_tokens < access.max_wrong_tokens;
-  if (const auto grant = may_try ? find_grant(token) : std::nullopt) {
-    client->access = *grant;
-    Json answer{{"role", to_string(grant->role)}};
-    if (!grant->session.empty()) answer["session"] = grant->session;
-    return answer;
+  if (const auto use = may_try ? use_token(hash) : std::nullopt) {
+    // At once, because the client may have sent further requests already.
+    const Grant before = std::exchange(client->access, use->grant);
+    Json answer{{"role", to_string(use->grant.role)}};
+    if (!use->grant.session.empty()) answer["session"] = use->grant.session;
+    resources_.tokens.store_use(
+        hash, *use,
+        [this, before, answer = std::move(answer),
+         waiting = std::make_shared<PendingReply>(std::move(reply))](auto failure) {
+          if (!failure) return waiting->answer(answer);
+          withdraw(waiting->client()->id(), before);
+          waiting->answer(storage_failed(*failure));
+        });
+    return {};
   }
   const bool is_last = ++client->wrong_tokens >= access.max_wrong_tokens;
   spdlog::warn("a wrong token, number {} of its connection", client->wrong_tokens);
@@ -67,8 +76,14 @@ void AccessControl::close_unless_entered(ConnectionId id) {
   client->outbox->close(kNotAuthenticated, "no token was shown in time");
 }
 
-RpcResult AccessControl::issue_ticket(const PendingReply& reply, Role role,
-                                      const std::optional<SessionId>& session) {
+void AccessControl::withdraw(ConnectionId id, const Grant& before) {
+  const std::lock_guard lock(tables_.mutex);
+  Client* const client = tables_.clients.find(id);
+  if (client != nullptr && client->session == 0) client->access = before;
+}
+
+std::optional<RpcError> AccessControl::issue_ticket(PendingReply& reply, Role role,
+                                                    const std::optional<SessionId>& session) {
   Grant grant{role, session.value_or(""), true};
   {
     const std::lock_guard lock(tables_.mutex);
@@ -80,13 +95,21 @@ RpcResult AccessControl::issue_ticket(const PendingReply& reply, Role role,
     if (session) {
       const auto* found = tables_.sessions.find(*session);
       if (found == nullptr) return admission_.refuse_missing(*client, *session);
-      if (auto error = admission_.refuse_role(reply, found->first)) return *std::move(error);
+      if (auto error = admission_.refuse_role(reply, found->first)) return error;
     }
   }
   const auto time = resources_.settings.access.ticket_time;
-  const auto token = resources_.tokens.issue(std::move(grant), 1, time);
-  if (!token) return limit_reached("tokens", resources_.settings.limits.max_tokens);
-  return Json{{"token", *token}, {"role", to_string(role)}, {"seconds", time.count()}};
+  resources_.tokens.issue(
+      std::move(grant), 1, time,
+      [role, time, maximum = resources_.settings.limits.max_tokens,
+       waiting =
+           std::make_shared<PendingReply>(std::move(reply))](const AccessTokens::Issued& issued) {
+        if (issued.failure) return waiting->answer(storage_failed(*issued.failure));
+        if (!issued.token) return waiting->answer(limit_reached("tokens", maximum));
+        waiting->answer(
+            Json{{"token", *issued.token}, {"role", to_string(role)}, {"seconds", time.count()}});
+      });
+  return {};
 }
 
 }  // namespace vat

@@ -16,15 +16,19 @@ class AccessControl {
   /// Otherwise, the connection has no access and is closed if it sends no token in time. The caller
   /// must hold the directory's lock.
   void start(Client& client);
-  /// Grants the access of the token to the client. The reply to an invalid token is delayed.
+  /// Grants the access of the token to the client. Answers after the use of the token is stored.
+  /// The reply to an invalid token is delayed.
   std::optional<RpcResult> enter(PendingReply& reply, std::string_view token);
-  /// Returns a token that is valid once, for a short time. Only an admin may request a token
-  /// without a session, which is valid in all sessions.
-  RpcResult issue_ticket(const PendingReply& reply, Role role,
-                         const std::optional<SessionId>& session);
+  /// Answers with a token that is valid once, for a short time. Only an admin may request a token
+  /// without a session, which is valid in all sessions. Errors that are known immediately are
+  /// returned instead.
+  std::optional<RpcError> issue_ticket(PendingReply& reply, Role role,
+                                       const std::optional<SessionId>& session);
 
  private:
-  std::optional<Grant> find_grant(std::string_view token);
+  std::optional<AccessTokens::Use> use_token(const TokenHash& token);
+  /// Restores the previous access of a client that has not joined a session.
+  void withdraw(ConnectionId id, const Grant& before);
   void close_unless_entered(ConnectionId id);
 
   ServerResources& resources_;

@@ -62,7 +62,8 @@ ServerResources::ServerResources(const Catalogue& catalogue_in, ServerSettings s
                   &downloads,
                   storage ? &storage->states() : &saved_in_memory->states,
                   storage ? &storage->scenes() : &saved_in_memory->scenes,
-                  &memory},
+                  &memory,
+                  &storage_threads},
       recovery_limits(without_scene_limits(settings.limits)),
       recovery_budget(kUnlimitedResources),
       recovery_environment{catalogue,       recovery_limits, settings.instructions, runner, metrics,
@@ -70,9 +71,10 @@ ServerResources::ServerResources(const Catalogue& catalogue_in, ServerSettings s
                            methods,         &downloads},
       pool(2 * runner.thread_count()),
       deferred(std::make_shared<DeferredTasks>(pool, clock)),
-      creations(boost::asio::make_strand(pool)) {
+      creations(boost::asio::make_strand(storage_threads)),
+      storage_requests(boost::asio::make_strand(storage_threads)) {
   VAT_CHECK(runner.thread_count() > 0);
-  if (storage) tokens.keep_in(storage->tokens());
+  if (storage) tokens.keep_in(storage->tokens(), storage->journal());
 }
 
 }  // namespace vat

@@ -42,6 +42,7 @@ struct ServerResources {
   SlowTickGate slow_tick_gate;
   boost::asio::thread_pool frame_threads;
   boost::asio::thread_pool read_threads{1};
+  boost::asio::thread_pool storage_threads{2};
   Downloads downloads;
   Imports imports;
   const std::unique_ptr<Storage> storage;                // null: sessions are in memory only
@@ -54,8 +55,11 @@ struct ServerResources {
   const SessionEnvironment recovery_environment;
   boost::asio::thread_pool pool;
   const std::shared_ptr<DeferredTasks> deferred;
-  /// Strand that creates sessions one at a time, so that creations use at most one thread.
+  /// Strand of `storage_threads` that creates sessions one at a time, so that creations use at most
+  /// one thread.
   boost::asio::strand<boost::asio::thread_pool::executor_type> creations;
+  /// Strand of `storage_threads` for requests to the server that use the storage.
+  boost::asio::strand<boost::asio::thread_pool::executor_type> storage_requests;
 
   SavedScenes& saved_scenes() const { return *environment.scenes; }
 };

@@ -73,15 +73,17 @@ bool SessionDirectory::is_ready() const {
   return !admission_.stopped() && !admission_.is_draining() && !tables_.sessions.is_recovering();
 }
 
-std::optional<SessionNumber> SessionDirectory::store(const std::string& name, const Scene& scene) {
+std::optional<SessionDirectory::Stored> SessionDirectory::store(const std::string& name,
+                                                                const Scene& scene) {
   if (resources_.storage == nullptr) return {};
   StoredSession session;
   session.name = name;
   session.instruction_set = to_string(resources_.environment.instructions);
   session.settings = write_settings({name, admission_.default_role(), false, 0}).dump();
-  const Json params{{"scene", write_scene(scene)}};
-  return resources_.storage->sessions().create(
-      session, {1, 0, 0, 0, std::string(kLoadMethod), params.dump(), false});
+  const std::string params = Json{{"scene", write_scene(scene)}}.dump();
+  const SessionNumber number = resources_.storage->sessions().create(
+      session, {1, 0, 0, 0, std::string(kLoadMethod), params, false});
+  return Stored{number, params.size()};
 }
 
 std::variant<SessionId, RpcError> SessionDirectory::create(std::string name, const Scene& scene,
@@ -95,7 +97,7 @@ std::variant<SessionId, RpcError> SessionDirectory::create(std::string name, con
   if (auto* error = std::get_if<RpcError>(&simulation)) return std::move(*error);
   auto share = resources_.budget.take(resources_of(std::get<Simulation>(simulation)));
   if (const auto* excess = std::get_if<LimitExcess>(&share)) return limit_reached(*excess);
-  std::optional<SessionNumber> stored;
+  std::optional<Stored> stored;
   try {
     stored = store(name, scene);
   } catch (const StorageError& error) {
@@ -103,20 +105,21 @@ std::variant<SessionId, RpcError> SessionDirectory::create(std::string name, con
     return storage_failed(error.kind());
   }
 
-  const std::lock_guard lock(tables_.mutex);  // not before: the above takes long
+  std::unique_lock lock(tables_.mutex);  // not before: the above takes long
   if (auto error = admission_.refuse_session()) {
-    if (stored) resources_.storage->sessions().close(*stored);
+    lock.unlock();
+    if (stored) resources_.storage->sessions().close(stored->number);
     return *std::move(error);
   }
-  const SessionNumber number = stored ? *stored : tables_.sessions.next_number();
+  const SessionNumber number = stored ? stored->number : tables_.sessions.next_number();
   auto core = std::make_unique<SessionCore>(
       to_id(number),
       SessionSettings{std::move(name), admission_.default_role(), false, creator.connection},
       std::get<Simulation>(std::move(simulation)), std::get<ResourceShare>(std::move(share)),
       environment);
   if (stored) {
-    core->history().keep_in(
-        std::make_unique<SessionLog>(*resources_.storage, number, SessionLog::Place{1, 0}));
+    core->history().keep_in(std::make_unique<SessionLog>(
+        *resources_.storage, number, SessionLog::Place{1, 0, false, stored->log_bytes}));
   }
   const auto session = std::make_shared<Session>(std::move(core), nullptr, resources_.pool,
                                                  resources_.slow_tick_gate);
@@ -146,6 +149,13 @@ std::optional<RpcError> SessionDirectory::create_later(PendingReply& reply, std:
                     [&] { return create_from(scene, std::move(name), std::move(creator)); });
       });
   return {};
+}
+
+void SessionDirectory::use_storage(PendingReply& reply, std::function<RpcResult()> work) {
+  boost::asio::post(resources_.storage_requests,
+                    [reply = std::move(reply), work = std::move(work)]() mutable {
+                      answer_with(reply, reply.method().name, work);
+                    });
 }
 
 RpcResult SessionDirectory::create_from(const Json& scene, std::string name,

@@ -4,6 +4,7 @@
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -50,9 +51,12 @@ class SessionDirectory {
   /// Returns false during the recovery of sessions and after drain().
   bool is_ready() const;
 
+  /// Creates a session. May wait for the disk.
   std::variant<SessionId, RpcError> create(std::string name, const Scene& scene,
                                            SessionCreator creator);
-  /// Creates a session on a thread of the pool, and then answers. Errors that are known immediately
+  /// Answers with the result of `work`, which may wait for the disk.
+  void use_storage(PendingReply& reply, std::function<RpcResult()> work);
+  /// Creates a session on a storage thread, and then answers. Errors that are known immediately
   /// are returned instead.
   std::optional<RpcError> create_later(PendingReply& reply, std::string name, Json scene);
   struct Listed {
@@ -91,7 +95,12 @@ class SessionDirectory {
   void stop();
 
  private:
-  std::optional<SessionNumber> store(const std::string& name, const Scene& scene);
+  /// A new session in the storage.
+  struct Stored {
+    SessionNumber number = 0;
+    std::size_t log_bytes = 0;
+  };
+  std::optional<Stored> store(const std::string& name, const Scene& scene);
   /// Measures and estimates the memory by use.
   ServerMetrics::Memory memory_use();
   RpcResult create_from(const Json& scene, std::string name, SessionCreator creator);
@@ -100,8 +109,10 @@ class SessionDirectory {
 
   // The caller must hold the lock for these functions.
   std::optional<RpcError> close_absent(PendingReply& reply, const SessionId& id);
-  /// Removes the session from the storage. Returns the kind of error on failure.
-  std::optional<StorageError::Kind> forget_stored(SessionNumber number);
+  /// Closes the stored session, if it is stored, and then calls `then`. If the storage is not used,
+  /// calls `then` at once. `then` holds the lock.
+  void forget_stored_then(SessionNumber number,
+                          std::function<void(std::optional<StorageError::Kind>)> then);
   void leave_session(Client& client, PendingReply reply);
   void close_session(SessionNumber number, Session::End end, const std::string& reason,
                      std::optional<PendingReply> reply);

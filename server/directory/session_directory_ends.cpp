@@ -38,8 +38,12 @@ std::optional<RpcError> SessionDirectory::close(PendingReply& reply, const Sessi
   if (client == nullptr || !admission_.may_close(*client, number)) {
     if (auto error = admission_.refuse_role(reply, number)) return error;
   }
-  if (const auto failure = forget_stored(number)) return storage_failed(*failure);
-  close_session(number, Session::End::closed, reason, std::move(reply));
+  const auto waiting = std::make_shared<PendingReply>(std::move(reply));
+  forget_stored_then(number, [this, id, number, reason, waiting](auto failure) {
+    if (failure) return waiting->answer(storage_failed(*failure));
+    if (tables_.sessions.find(id) == nullptr) return waiting->answer(no_such_session(id));
+    close_session(number, Session::End::closed, reason, std::move(*waiting));
+  });
   return {};
 }
 
@@ -50,32 +54,34 @@ std::optional<RpcError> SessionDirectory::close_absent(PendingReply& reply, cons
   const SessionNumber number = absent->first;
   if (auto error = admission_.refuse_role(reply, number)) return error;
   if (!absent->second.is_lost) return not_recovered(id, "recovering");
-  if (const auto failure = forget_stored(number)) return storage_failed(*failure);
-  resources_.storage->remove_closed();
-  remove_tokens(id, Session::End::closed);
-  tables_.sessions.remove_absent(number);
-  reply.answer(Json{{"tick", 0}});
+  const auto waiting = std::make_shared<PendingReply>(std::move(reply));
+  forget_stored_then(number, [this, id, number, waiting](auto failure) {
+    if (failure) return waiting->answer(storage_failed(*failure));
+    if (tables_.sessions.find_absent(id) == nullptr) return waiting->answer(no_such_session(id));
+    resources_.storage->remove_closed();
+    remove_tokens(id, Session::End::closed);
+    tables_.sessions.remove_absent(number);
+    waiting->answer(Json{{"tick", 0}});
+  });
   return {};
 }
 
-std::optional<StorageError::Kind> SessionDirectory::forget_stored(SessionNumber number) {
+void SessionDirectory::forget_stored_then(
+    SessionNumber number, std::function<void(std::optional<StorageError::Kind>)> then) {
   VAT_CHECK(tables_.mutex.is_held());
-  try {
-    if (resources_.storage && number < kFirstReplay) resources_.storage->sessions().close(number);
-    return {};
-  } catch (const StorageError& error) {
-    spdlog::error("session {} cannot be closed: {}", to_id(number), error.what());
-    return error.kind();
-  }
+  if (resources_.storage == nullptr || number >= kFirstReplay) return then({});
+  resources_.storage->journal().post(
+      [&storage = *resources_.storage, number] { storage.sessions().close(number); },
+      [this, then = std::move(then)](auto failure) {
+        boost::asio::post(resources_.storage_requests, [this, then, failure] {
+          const std::lock_guard lock(tables_.mutex);
+          then(failure);
+        });
+      });
 }
 
 void SessionDirectory::remove_tokens(const SessionId& id, Session::End end) {
-  try {
-    resources_.tokens.remove_session(id, end == Session::End::resumable);
-  } catch (const StorageError& error) {
-    // They grant nothing without their session.
-    spdlog::error("session {}: its invitations stay until they expire: {}", id, error.what());
-  }
+  resources_.tokens.remove_session(id, end == Session::End::resumable);
 }
 
 void SessionDirectory::close_session(SessionNumber number, Session::End end,
@@ -149,6 +155,7 @@ RpcResult SessionDirectory::request_drain(std::optional<std::chrono::millisecond
 void SessionDirectory::flush() {
   if (admission_.stopped()) return;
   wait_for_task([this](auto done) { boost::asio::post(resources_.creations, done); });
+  wait_for_task([this](auto done) { boost::asio::post(resources_.storage_requests, done); });
   std::vector<std::shared_ptr<Session>> sessions;
   {
     const std::lock_guard lock(tables_.mutex);
@@ -159,6 +166,7 @@ void SessionDirectory::flush() {
   }
   wait_for_task([this](auto done) { boost::asio::post(resources_.read_threads, done); });
   if (resources_.storage) resources_.storage->flush();
+  wait_for_task([this](auto done) { boost::asio::post(resources_.storage_requests, done); });
 }
 
 void SessionDirectory::stop() {
@@ -174,6 +182,7 @@ void SessionDirectory::stop() {
   recoverer_.join();
   resources_.read_threads.join();
   resources_.pool.join();
+  resources_.storage_threads.join();
   resources_.frame_threads.join();
   if (resources_.storage) resources_.storage->flush();
 }
@@ -210,8 +219,11 @@ void SessionDirectory::end_expired_sessions(SteadyClock::time_point now) {
     if (empty_since && now - *empty_since >= expiry_of(number)) expired.push_back(number);
   }
   for (const SessionNumber number : expired) {
-    if (forget_stored(number)) continue;
-    close_session(number, Session::End::closed, "the session had no participant for too long", {});
+    forget_stored_then(number, [this, number](auto failure) {
+      if (failure || !tables_.sessions.running().contains(number)) return;
+      close_session(number, Session::End::closed, "the session had no participant for too long",
+                    {});
+    });
   }
 }
 

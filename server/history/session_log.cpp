@@ -37,8 +37,7 @@ SessionLog::SessionLog(Storage& storage, std::uint64_t session, const Place& pla
       stored_position_(place.position),
       stored_last_(place.last) {
   writing_->needs_checkpoint = place.needs_checkpoint;
-  writing_->log_bytes = storage.sessions().log_bytes(session);
-  storage.checkpoints().drop_hashes(session, place.position);
+  writing_->log_bytes = place.log_bytes;
 }
 
 void SessionLog::number(std::span<LogEntry> entries) const {

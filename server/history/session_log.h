@@ -53,6 +53,7 @@ class SessionLog {
     std::uint64_t last = 0;  ///< sequence of the last stored entry
     std::uint64_t position = 0;
     bool needs_checkpoint = false;  ///< the log alone cannot reproduce this state
+    std::size_t log_bytes = 0;      ///< size of the stored entries
   };
   SessionLog(Storage& storage, std::uint64_t session, const Place& place);
 

@@ -22,7 +22,8 @@ ServerAction read_access_ticket(ObjectReader& params, Errors&) {
       const Error error{"out_of_range", "/role", "the role admin applies to all sessions"};
       return invalid_params({error});
     }
-    return directory.access().issue_ticket(reply, role, session);
+    if (auto error = directory.access().issue_ticket(reply, role, session)) return *error;
+    return {};
   };
 }
 

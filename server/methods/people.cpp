@@ -59,12 +59,8 @@ SessionAction read_session_invite(ObjectReader& params, Errors&) {
   std::optional<std::size_t> uses;
   if (params.has("uses")) uses = params.count("uses", 1, kMaxUses);
   const std::uint64_t seconds = params.count("expires", 1, kMaxExpirySeconds, kUsualExpirySeconds);
-  return [=](SessionCore& core, Participant&) -> ActionResult {
-    const SessionEnvironment& environment = core.environment();
-    const auto token =
-        environment.tokens.issue({role, core.id(), true}, uses, std::chrono::seconds(seconds));
-    if (!token) return limit_reached("tokens", environment.limits.max_tokens);
-    return Json{{"token", *token}, {"role", to_string(role)}, {"expires", seconds}};
+  return [=](SessionCore&, Participant&) -> ActionResult {
+    return IssueInvitation{role, uses, std::chrono::seconds(seconds)};
   };
 }
 

@@ -5,7 +5,9 @@
 #include "server/messages/describe.h"
 #include "server/methods/handlers.h"
 #include "server/people/person_name.h"
+#include "server/session/core/saved_state.h"
 #include "server/session/core/scene_loading.h"
+#include "server/session/session_archive.h"
 #include "server/storage/saved_scenes.h"
 
 namespace vat {
@@ -44,47 +46,74 @@ SavedSceneLimits limits_of(const ServerLimits& limits) {
           limits.max_scenes_in_all, limits.max_scene_bytes_in_all};
 }
 
+/// Writes a scene, which replaces a scene of this name if the key or the role permits it. Called on
+/// a storage thread.
+RpcResult write_saved_scene(const SessionEnvironment& environment, SavedScene saved,
+                            const std::string& replaced_key, Role role) {
+  const std::string& name = saved.entry.name;
+  const auto before = environment.scenes->find(name);
+  if (before && !may_change(*before, replaced_key, role)) return scene_of_another(name);
+  const std::string key = make_token();
+  if (before) saved.address = before->address;
+  saved.key = before ? before->key : hash_of_token(key);
+  if (const auto excess = environment.scenes->write(saved, limits_of(environment.limits))) {
+    return limit_reached(excess->limit, excess->maximum);
+  }
+  Json answer{{"name", name}, {"bytes", saved.scene.size()}};
+  if (!before) answer["key"] = key;
+  return answer;
+}
+
 ActionResult save_scene(const SessionCore& core, const Participant& participant,
                         const SceneToSave& wanted) {
   const SessionEnvironment& environment = core.environment();
   if (environment.catalogue.find(wanted.name) != nullptr) {
     return not_allowed("the catalogue contains a scene with this name");
   }
-  const auto before = environment.scenes->find(wanted.name);
-  if (before && !may_change(*before, wanted.key, participant.role)) {
-    return scene_of_another(wanted.name);
-  }
   auto read = scene_to_save(core, wanted);
   if (auto* error = std::get_if<RpcError>(&read)) return std::move(*error);
   auto& scene = std::get<Scene>(read);
   scene.name = wanted.name;
   SavedScene saved;
-  const std::string key = make_token();
   saved.entry = {wanted.name,
                  scene.title,
                  scene.description,
                  participant.name,
                  environment.clock.wall_time(),
                  0};
-  saved.address = before ? before->address : participant.outbox->address();
-  saved.key = before ? before->key : hash_of_token(key);
+  saved.address = participant.outbox->address();
   saved.scene = write_scene(scene).dump();
-  if (const auto excess = environment.scenes->write(saved, limits_of(environment.limits))) {
-    return limit_reached(excess->limit, excess->maximum);
-  }
-  Json answer{{"name", wanted.name}, {"bytes", saved.scene.size()}};
-  if (!before) answer["key"] = key;
-  return answer;
+  return StorageWork{
+      [&environment, saved = std::move(saved), key = wanted.key, role = participant.role] {
+        return write_saved_scene(environment, saved, key, role);
+      }};
 }
 
-RpcResult delete_scene(SessionDirectory& directory, const PendingReply& reply,
-                       const std::string& name, const std::string& key) {
-  SavedScenes& scenes = directory.resources().saved_scenes();
+RpcResult delete_scene(SavedScenes& scenes, const std::string& name, const std::string& key,
+                       Role role) {
   const auto scene = scenes.find(name);
   if (!scene) return no_such_scene(name, "/name");
-  const Role role = directory.find_client(reply.client()->id()).role;
   if (!may_change(*scene, key, role)) return scene_of_another(name);
   scenes.remove(name);
+  return Json::object();
+}
+
+RpcResult list_states(SavedStates& states, const SessionId& session) {
+  Json list = Json::array();
+  for (const SavedStateEntry& entry : states.list(session)) {
+    list.push_back({{"name", entry.name},
+                    {"saved_by", entry.saved_by},
+                    {"saved", entry.time},
+                    {"at_tick", entry.tick},
+                    {"time", entry.simulation_time},
+                    {"hash", describe_hash(entry.hash)},
+                    {"bytes", entry.bytes}});
+  }
+  return Json{{"states", std::move(list)}};
+}
+
+RpcResult delete_state(SavedStates& states, const SessionId& session, const std::string& name) {
+  if (!states.remove(session, name)) return no_such_state(name);
   return Json::object();
 }
 
@@ -95,7 +124,10 @@ SessionAction read_session_save(ObjectReader& params, Errors& errors) {
   return [name](SessionCore& core, Participant& participant) -> ActionResult {
     if (core.playback() != nullptr) return not_allowed("a replay saves no states");
     if (core.history().divergence()) return not_allowed("the session differs from its log");
-    return SaveState{name, participant.name};
+    return StorageWork{[&environment = core.environment(), session = core.id(),
+                        moment = moment_to_save(core), name, saved_by = participant.name] {
+      return save_state(environment, session, moment, name, saved_by);
+    }};
   };
 }
 
@@ -108,25 +140,18 @@ SessionAction read_session_load(ObjectReader& params, Errors& errors) {
 
 SessionAction read_session_saves(ObjectReader&, Errors&) {
   return [](SessionCore& core, Participant&) -> ActionResult {
-    Json states = Json::array();
-    for (const SavedStateEntry& entry : core.environment().states->list(core.id())) {
-      states.push_back({{"name", entry.name},
-                        {"saved_by", entry.saved_by},
-                        {"saved", entry.time},
-                        {"at_tick", entry.tick},
-                        {"time", entry.simulation_time},
-                        {"hash", describe_hash(entry.hash)},
-                        {"bytes", entry.bytes}});
-    }
-    return Json{{"states", std::move(states)}};
+    return StorageWork{[states = core.environment().states, session = core.id()] {
+      return list_states(*states, session);
+    }};
   };
 }
 
 SessionAction read_session_delete_save(ObjectReader& params, Errors& errors) {
   const std::string name = read_person_name(params, "name", errors);
   return [name](SessionCore& core, Participant&) -> ActionResult {
-    if (!core.environment().states->remove(core.id(), name)) return no_such_state(name);
-    return Json::object();
+    return StorageWork{[states = core.environment().states, session = core.id(), name] {
+      return delete_state(*states, session, name);
+    }};
   };
 }
 
@@ -148,7 +173,11 @@ ServerAction read_scene_delete(ObjectReader& params, Errors& errors) {
   std::string key;
   if (params.has("key")) key = params.text("key", kMaxTokenBytes);
   return [name, key](SessionDirectory& directory, PendingReply& reply) -> std::optional<RpcResult> {
-    return delete_scene(directory, reply, name, key);
+    const Role role = directory.find_client(reply.client()->id()).role;
+    directory.use_storage(reply, [&scenes = directory.resources().saved_scenes(), name, key, role] {
+      return delete_scene(scenes, name, key, role);
+    });
+    return {};
   };
 }
 

@@ -1,6 +1,7 @@
 // scene.get
 
 #include "core/limits.h"
+#include "core/support/check.h"
 #include "server/methods/handlers.h"
 #include "server/session/core/scene_loading.h"
 #include "server/session/core/session_view.h"
@@ -35,9 +36,12 @@ RpcResult give(Json scene, const ServerLimits& limits) {
 }
 
 RpcResult get_named(const std::string& name, const SessionEnvironment& environment) {
-  if (const Scene* scene = environment.catalogue.find(name)) {
-    return give(write_scene(*scene), environment.limits);
-  }
+  const Scene* const scene = environment.catalogue.find(name);
+  VAT_CHECK(scene != nullptr);
+  return give(write_scene(*scene), environment.limits);
+}
+
+RpcResult get_saved(const std::string& name, const SessionEnvironment& environment) {
   auto saved = find_saved_scene(name, environment);
   if (auto* error = std::get_if<RpcError>(&saved)) return std::move(*error);
   return give(std::get<Json>(std::move(saved)), environment.limits);
@@ -54,6 +58,9 @@ SessionAction read_scene_get(ObjectReader& params, Errors& errors) {
     const std::string name = params.text("scene", kMaxNameLength);
     return [name](SessionCore& core, Participant&) -> ActionResult {
       const SessionEnvironment& environment = core.environment();
+      if (environment.catalogue.find(name) == nullptr) {
+        return StorageWork{[name, &environment] { return get_saved(name, environment); }};
+      }
       return Read{
           false, [name, &environment](SessionView&) { return get_named(name, environment); }, {}};
     };

@@ -107,15 +107,14 @@ std::optional<RpcResult> info(const SessionDirectory& directory) {
   };
 }
 
-std::optional<RpcResult> list_scenes(const SessionDirectory& directory) {
+RpcResult list_scenes(const ServerResources& resources) {
   Json scenes = Json::array();
-  for (const CatalogueEntry& entry : directory.resources().catalogue.entries()) {
+  for (const CatalogueEntry& entry : resources.catalogue.entries()) {
     scenes.push_back(
         {{"name", entry.name}, {"title", entry.title}, {"description", entry.description}});
   }
-  for (const SavedSceneEntry& entry : directory.resources().saved_scenes().list()) {
-    if (directory.resources().catalogue.find(entry.name) != nullptr)
-      continue;  // it has got one since
+  for (const SavedSceneEntry& entry : resources.saved_scenes().list()) {
+    if (resources.catalogue.find(entry.name) != nullptr) continue;  // it has got one since
     scenes.push_back({{"name", entry.name},
                       {"title", entry.title},
                       {"description", entry.description},
@@ -132,7 +131,11 @@ ServerAction read_server_info(ObjectReader&, Errors&) {
 }
 
 ServerAction read_scene_list(ObjectReader&, Errors&) {
-  return [](SessionDirectory& directory, PendingReply&) { return list_scenes(directory); };
+  return [](SessionDirectory& directory, PendingReply& reply) -> std::optional<RpcResult> {
+    directory.use_storage(reply,
+                          [&resources = directory.resources()] { return list_scenes(resources); });
+    return {};
+  };
 }
 
 }  // namespace vat

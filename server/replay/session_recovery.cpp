@@ -93,9 +93,12 @@ void SessionRecovery::repeat_log(SessionCore& core) {
 void SessionRecovery::finish(SessionCore& core, const SessionEnvironment& environment) {
   core.set_environment(environment);
   const std::uint64_t last = storage_.sessions().last_sequence(stored_.number);
+  const std::uint64_t position = core.run().position();
+  storage_.checkpoints().drop_hashes(stored_.number, position);
   core.history().keep_in(std::make_unique<SessionLog>(
       storage_, stored_.number,
-      SessionLog::Place{last, core.run().position(), core.history().divergence().has_value()}));
+      SessionLog::Place{last, position, core.history().divergence().has_value(),
+                        storage_.sessions().log_bytes(stored_.number)}));
   end_recovery(core, environment.clock.now());
 }
 

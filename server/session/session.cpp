@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/support/check.h"
+#include "server/session/core/command_entry.h"
 
 namespace vat {
 namespace {
@@ -25,6 +26,10 @@ Session::Session(std::unique_ptr<SessionCore> core, std::unique_ptr<Playback> pl
                  boost::asio::thread_pool& pool, SlowTickGate& slow_tick_gate)
     : clock_(core->environment().clock),
       strand_(boost::asio::make_strand(pool.get_executor())),
+      storage_strand_(boost::asio::make_strand((core->environment().storage_threads != nullptr
+                                                    ? *core->environment().storage_threads
+                                                    : pool)
+                                                   .get_executor())),
       core_(std::move(core)),
       playback_(std::move(playback)),
       tick_timer_(clock_.make_timer(strand_)),
@@ -73,13 +78,6 @@ SessionSummary Session::summary() const {
   return summary_;
 }
 
-void Session::post_behind(std::function<void()> task) {
-  boost::asio::post(strand_, [self = shared_from_this(), task = std::move(task)]() mutable {
-    if (self->has_writes()) return self->tasks_behind_writes_.push_back(std::move(task));
-    self->core_->notifier().post_behind_frames(std::move(task));
-  });
-}
-
 void Session::add(Item item) {
   switch (inbox_.add(item)) {
     case SessionInbox::Added::to_pending:
@@ -98,9 +96,9 @@ void Session::schedule(Turn turn) {
 void Session::run_turn(Turn turn) {
   VAT_CHECK(on_strand());
   if (closed_) return;
-  const bool may_run = turn == &Session::written_turn || turn == &Session::reads_done_turn ||
+  const bool may_run = turn == &Session::waited_turn || turn == &Session::reads_done_turn ||
                        turn == &Session::presence_turn;
-  if (write_ && !may_run) return repeat_after_write(turn);
+  if (wait_ && !may_run) return repeat_after_wait(turn);
   const ThreadOwner::Hold hold(core_->owner());
   const ThreadPoolRunner::HelperReservation reservation(core_->environment().runner);
   try {
@@ -114,10 +112,10 @@ void Session::run_turn(Turn turn) {
     end_hold();
   }
   place_.reset();
-  if (has_writes()) return;
+  if (uses_storage()) return;
   for (const Turn waiting : std::exchange(waiting_turns_, {})) schedule(waiting);  // after a fault
-  for (auto& task : std::exchange(tasks_behind_writes_, {})) {
-    core_->notifier().post_behind_frames(std::move(task));
+  for (auto& task : std::exchange(tasks_behind_storage_, {})) {
+    run_behind_storage(std::move(task));
   }
 }
 
@@ -156,7 +154,7 @@ void Session::inbox_turn() {
       schedule(&Session::inbox_turn);  // for the requests that are left
       throw;
     }
-    if (write_) return repeat_after_write(&Session::inbox_turn);
+    if (wait_) return repeat_after_wait(&Session::inbox_turn);
   }
   schedule(&Session::inbox_turn);
 }
@@ -173,7 +171,7 @@ bool Session::put_back(Item& item) {
   if (command == nullptr) {
     // The connection may have been another participant's.
     if (execute_pointers()) return false;
-    repeat_after_write(&Session::inbox_turn);
+    repeat_after_wait(&Session::inbox_turn);
   } else {
     const bool is_logged = core_->history().log() != nullptr && command->row->is_logged() &&
                            command->row->rate_class != RateClass::pointer;
@@ -202,52 +200,6 @@ void Session::execute(Item item) {
   }
 }
 
-void Session::execute_join(PendingReply reply, const SessionInbox::Join& join) {
-  auto joined = core_->people().join(reply.client(), join.membership, join.request, clock_.now());
-  if (auto* error = std::get_if<RpcError>(&joined)) {
-    join.undo();
-    reply.answer(std::move(*error));
-    return;
-  }
-  const auto& result = std::get<JoinedParticipant>(joined);
-  const auto waiting = std::make_shared<PendingReply>(std::move(reply));
-  // First, because the connection may have been another participant's.
-  end_departures([this, waiting, number = result.participant.number, resume = result.resume,
-                  resumed = result.resumed] {
-    update_summary();  // before the answer, as below: lists then show what was done
-    const Participant* participant = core_->participants().find(number);
-    VAT_CHECK(participant != nullptr);
-    const Json content{{"tick", core_->run().tick()},
-                       {"session", id()},
-                       {"participant", number},
-                       {"name", participant->name},
-                       {"role", to_string(participant->role)},
-                       {"resume", resume},
-                       {"resumed", resumed},
-                       {"settings", core_->people().describe_settings()},
-                       {"participants", describe_participants(core_->participants())}};
-    const auto description = core_->notifier().description();
-    waiting->answer_text(begin_object(content, "description") + description.begin, description.end);
-  });
-}
-
-void Session::execute_leave(PendingReply reply) {
-  const ConnectionId client = reply.client()->id();
-  if (const Participant* participant = core_->participants().find_client(client)) {
-    core_->people().leave(participant->number);
-  }
-  const auto waiting = std::make_shared<PendingReply>(std::move(reply));
-  end_departures([this, waiting] {
-    update_summary();
-    waiting->answer(Json{{"tick", core_->run().tick()}});
-  });
-}
-
-void Session::execute_disconnect(const PendingReply& reply) {
-  core_->people().disconnect(reply.client()->id(), clock_.now());
-  end_departures([] {});
-}
-
 void Session::execute_command(PendingReply reply, SessionCommand command) {
   const Participant* participant = core_->participants().find_client(reply.client()->id());
   if (participant == nullptr) {
@@ -269,11 +221,24 @@ void Session::execute_command(PendingReply reply, SessionCommand command) {
     if (is_first) plan_pointers(false);
     return;
   }
+  if (!names_saved_data(core_->environment(), command)) {
+    return execute_stored(participant->number, std::move(reply), std::move(command));
+  }
+  resolve_then(std::move(command), [this, number = participant->number,
+                                    waiting = std::make_shared<PendingReply>(std::move(reply))](
+                                       SessionCommand resolved) {
+    execute_stored(number, std::move(*waiting), std::move(resolved));
+  });
+}
+
+void Session::execute_stored(ParticipantNumber participant, PendingReply reply,
+                             SessionCommand command) {
+  const MethodRow& row = *command.row;
   // Keeps the order: of commands of the session, and of all requests of this client.
   const bool is_ordered = row.is_logged() || row.rate_class == RateClass::control;
   Commands commands;
-  if (is_ordered || pointers_.has_of(participant->number)) commands = pointers_.take();
-  commands.push_back({participant->number, std::move(command), {}});
+  if (is_ordered || pointers_.has_of(participant)) commands = pointers_.take();
+  commands.push_back({participant, std::move(command), {}});
   commands.back().replies.push_back(std::move(reply));
   run_commands(std::move(commands));
 }
@@ -323,8 +288,10 @@ void Session::answer(PendingReply reply, const SessionCommand& command, ActionRe
     export_recording(std::move(reply));
   } else if (const auto* seek = std::get_if<SeekTo>(&result)) {
     begin_seek(std::move(reply), seek->position);
-  } else if (auto* wanted = std::get_if<SaveState>(&result)) {
-    save(std::move(reply), std::move(*wanted));
+  } else if (auto* work = std::get_if<StorageWork>(&result)) {
+    use_storage(std::move(reply), command, std::move(*work));
+  } else if (const auto* invitation = std::get_if<IssueInvitation>(&result)) {
+    invite(std::move(reply), *invitation);
   } else if (auto* settings = std::get_if<StoreSettings>(&result)) {
     store_settings(std::move(reply), std::move(settings->settings));
   } else if (auto* read = std::get_if<Read>(&result)) {
@@ -342,8 +309,8 @@ void Session::answer(PendingReply reply, const SessionCommand& command, ActionRe
 
 bool Session::execute_pointers() {
   VAT_CHECK(on_strand());
-  if (!write_ && !pointers_.empty()) run_commands(pointers_.take());
-  return !write_;
+  if (!wait_ && !pointers_.empty()) run_commands(pointers_.take());
+  return !wait_;
 }
 
 void Session::close_turn() {

@@ -67,7 +67,8 @@ class Session : public std::enable_shared_from_this<Session> {
   /// Returns the summary at the time of the last reply or turn.
   SessionSummary summary() const;
 
-  /// Runs `task` on a frame thread, after earlier turns and the frames that these turns published.
+  /// Runs `task` on a frame thread, after earlier turns, their storage work, and the frames that
+  /// they published.
   void post_behind(std::function<void()> task);
 
  private:
@@ -84,11 +85,12 @@ class Session : public std::enable_shared_from_this<Session> {
     std::uint64_t end_tick = 0;  // tick after the job
   };
   using Steps = std::deque<StepJob>;
-  /// A running write to the log, for which the session waits.
-  struct LogWrite {
-    std::function<void(const Failure&)> then;
+  /// A running use of the storage, for which the session waits: a write to the log, or a read of
+  /// saved data.
+  struct StorageWait {
+    std::function<void(std::optional<StorageError::Kind>)> then;
     std::optional<StorageError::Kind> failure;
-    /// Keeps the pool running until the write is complete.
+    /// Keeps the pool running until the use is complete.
     boost::asio::executor_work_guard<boost::asio::thread_pool::executor_type> guard;
   };
 
@@ -100,13 +102,16 @@ class Session : public std::enable_shared_from_this<Session> {
   void run_turn(Turn turn);
   void finish_turn();
   void update_summary();
+  /// Runs `task` on a frame thread, after the storage work and frames of earlier turns.
+  void run_behind_storage(std::function<void()> task);
 
-  // Requests, implemented in session.cpp.
+  // Requests, implemented in session.cpp. Joins and departures are in session_joins.cpp.
   void inbox_turn();
   std::optional<Item> next_item();
-  /// Returns true if the item must wait for a write to the log or for the next tick.
+  /// Returns true if the item must wait for the storage or for the next tick.
   bool put_back(Item& item);
   void execute(Item item);
+  void execute_stored(ParticipantNumber participant, PendingReply reply, SessionCommand command);
   void execute_join(PendingReply reply, const SessionInbox::Join& join);
   void execute_leave(PendingReply reply);
   void execute_disconnect(const PendingReply& reply);
@@ -118,8 +123,8 @@ class Session : public std::enable_shared_from_this<Session> {
   void answer(PendingReply reply, const SessionCommand& command, ActionResult result);
   /// Returns whether pointer commands wait for the next tick.
   bool tick_is_coming() const { return core_->clock().playing() || !steps_.empty(); }
-  /// Executes the waiting pointer commands, unless a write to the log is running. Returns false if
-  /// the caller must wait for a write.
+  /// Executes the waiting pointer commands, unless the session waits for the storage. Returns
+  /// false if the caller must wait too.
   bool execute_pointers();
   void close_turn();
 
@@ -138,7 +143,11 @@ class Session : public std::enable_shared_from_this<Session> {
   void start_reads();
   void reads_done_turn();
   void export_recording(PendingReply reply);
-  void save(PendingReply reply, SaveState save);
+  /// Runs the work on a storage thread, and answers with its result.
+  void use_storage(PendingReply reply, const SessionCommand& command, StorageWork work);
+  void invite(PendingReply reply, const IssueInvitation& wanted);
+  /// Reads the saved data that the command names, and then calls `then`.
+  void resolve_then(SessionCommand command, std::function<void(SessionCommand)> then);
 
   // Writes to the log, implemented in session_writes.cpp.
   /// Stores log entries and then calls `work`, with an error if the entries could not be stored. If
@@ -148,9 +157,12 @@ class Session : public std::enable_shared_from_this<Session> {
   /// Calls `write` and then, after the write is complete, `then`. The session must be stored.
   void write_then(const std::function<void(SessionLog&, Journal::Done)>& write,
                   std::function<void(const Failure&)> then);
-  /// Lets `turn` run again after the running write to the log.
-  void repeat_after_write(Turn turn) { waiting_turns_.push_back(turn); }
-  void written_turn();
+  /// Calls `start`, and calls `then` in a turn after `start`'s parameter was called.
+  void wait_then(const std::function<void(Journal::Done)>& start,
+                 std::function<void(std::optional<StorageError::Kind>)> then);
+  /// Lets `turn` run again after the running use of the storage.
+  void repeat_after_wait(Turn turn) { waiting_turns_.push_back(turn); }
+  void waited_turn();
   void resume_turns();
   /// Logs and executes departures and ends of grabs that are due, and then calls `then`.
   void end_departures(const std::function<void()>& then);
@@ -162,7 +174,7 @@ class Session : public std::enable_shared_from_this<Session> {
   void plan_pointers(bool after_tick);
   void pointer_turn() { execute_pointers(); }
   void end_hold();
-  bool has_writes() const { return write_.has_value() || !ending_steps_.empty(); }
+  bool uses_storage() const { return wait_.has_value() || !ending_steps_.empty(); }
   /// Sends the event session.storage.
   void tell_storage();
 
@@ -193,6 +205,7 @@ class Session : public std::enable_shared_from_this<Session> {
 
   Clock& clock_;
   boost::asio::strand<boost::asio::thread_pool::executor_type> strand_;
+  boost::asio::strand<boost::asio::thread_pool::executor_type> storage_strand_;
   SessionInbox inbox_;
 
   mutable std::mutex mutex_;             // guards closing_, end_ and summary_
@@ -221,9 +234,9 @@ class Session : public std::enable_shared_from_this<Session> {
   std::deque<Item> put_back_;  // requests before those of the inbox
   bool holds_inbox_ = false;   // the inbox waits for the next tick
   bool has_held_inbox_ = false;
-  std::optional<LogWrite> write_;
-  std::vector<Turn> waiting_turns_;  // wait for write_
-  std::vector<std::function<void()>> tasks_behind_writes_;
+  std::optional<StorageWait> wait_;
+  std::vector<Turn> waiting_turns_;  // wait for wait_
+  std::vector<std::function<void()>> tasks_behind_storage_;
   bool step_scheduled_ = false;
   SlowTickGate& slow_tick_gate_;
   bool is_slow_ = false;  // whether the last tick was slow

@@ -31,10 +31,10 @@ RpcResult export_recording(const SessionEnvironment& environment, const std::str
 }
 
 RpcResult save_state(const SessionEnvironment& environment, const std::string& session,
-                     const MomentToSave& moment, const SaveState& save) {
+                     const MomentToSave& moment, const std::string& name,
+                     const std::string& saved_by) {
   VAT_CHECK(environment.states != nullptr);
-  const SavedState state =
-      make_saved_state(moment, save.name, save.saved_by, environment.clock.wall_time());
+  const SavedState state = make_saved_state(moment, name, saved_by, environment.clock.wall_time());
   const ServerLimits& limits = environment.limits;
   const auto excess =
       environment.states->write(session, state,
@@ -42,7 +42,7 @@ RpcResult save_state(const SessionEnvironment& environment, const std::string& s
                                  limits.max_state_bytes_in_all});
   if (excess) return limit_reached(*excess);
   return Json{{"tick", moment.tick},
-              {"name", save.name},
+              {"name", name},
               {"hash", describe_hash(state.entry.hash)},
               {"bytes", state.entry.bytes}};
 }

@@ -17,6 +17,7 @@ RpcResult export_recording(const SessionEnvironment& environment, const std::str
 /// Stores a snapshot of the session under a name. Returns the result of session.save. Throws
 /// StorageError.
 RpcResult save_state(const SessionEnvironment& environment, const std::string& session,
-                     const MomentToSave& moment, const SaveState& save);
+                     const MomentToSave& moment, const std::string& name,
+                     const std::string& saved_by);
 
 }  // namespace vat

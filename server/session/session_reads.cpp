@@ -40,6 +40,12 @@ void refuse_read(PendingReply& reply, const RateExcess& excess, ServerMetrics& m
 
 }  // namespace
 
+void charge_read(ReadBudget& of_session, ClientOutbox& client, std::size_t bytes,
+                 std::chrono::duration<double> time, SteadyClock::time_point now) {
+  of_session.charge(bytes, time, now);
+  if (ReadBudget* const of_client = client.read_budget()) of_client->charge(bytes, time, now);
+}
+
 ReadBatch::ReadBatch(std::vector<WaitingRead> reads, std::unique_ptr<SessionView> view,
                      std::shared_ptr<ReadBudget> budget, const SessionEnvironment& environment)
     : reads_(std::move(reads)),
@@ -72,11 +78,7 @@ void ReadBatch::answer(WaitingRead& waiting, Results& results) {
   const Result& result = found->second;
   const auto time = processor_time() - begin;
   const std::size_t bytes = result.text == nullptr ? 0 : result.text->size();
-  const auto now = environment_.clock.now();
-  budget_->charge(bytes, time, now);
-  if (ReadBudget* of_client = waiting.reply.client()->read_budget()) {
-    of_client->charge(bytes, time, now);
-  }
+  charge_read(*budget_, *waiting.reply.client(), bytes, time, environment_.clock.now());
   if (result.error) {
     waiting.reply.answer(*result.error);
   } else if (const auto excess = find_full_queue(*waiting.reply.client(), bytes)) {
@@ -128,12 +130,13 @@ SessionReads::SessionReads(const SessionEnvironment& environment)
       budget_(session_read_budget(environment.limits, environment.clock.now())) {}
 
 void SessionReads::add(WaitingRead read) {
-  const auto now = environment_.clock.now();
-  if (const auto excess = find_read_excess(read.reply, *budget_, now)) {
-    refuse_read(read.reply, *excess, environment_.metrics);
-  } else {
-    waiting_.push_back(std::move(read));
-  }
+  if (!refuse_excess(read.reply)) waiting_.push_back(std::move(read));
+}
+
+bool SessionReads::refuse_excess(PendingReply& reply) {
+  const auto excess = find_read_excess(reply, *budget_, environment_.clock.now());
+  if (excess) refuse_read(reply, *excess, environment_.metrics);
+  return excess.has_value();
 }
 
 std::shared_ptr<ReadBatch> SessionReads::begin_batch(const SessionRun& run) {

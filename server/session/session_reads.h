@@ -23,6 +23,11 @@ struct WaitingRead {
   std::string key;  ///< method, parameters and Read::copied; equal keys have equal results
 };
 
+/// Charges the budgets of the session and of the client with a result of `bytes` and its processor
+/// time.
+void charge_read(ReadBudget& of_session, ClientOutbox& client, std::size_t bytes,
+                 std::chrono::duration<double> time, SteadyClock::time_point now);
+
 /// Reads of a session that are computed one after another from one view of the session. Equal reads
 /// share one result.
 class ReadBatch {
@@ -61,6 +66,11 @@ class SessionReads {
 
   /// Adds a read, or refuses it if the client or the session has exceeded its budget.
   void add(WaitingRead read);
+  /// Refuses a read that is not part of a batch, if the client or the session has exceeded its
+  /// budget. Returns whether the read is refused.
+  bool refuse_excess(PendingReply& reply);
+  /// Returns the budget of the session, for charge_read().
+  const std::shared_ptr<ReadBudget>& budget() const { return budget_; }
   /// Returns the next batch, or null if a batch is being computed or no read waits. The caller must
   /// run the batch on the read thread, and then call end_batch().
   std::shared_ptr<ReadBatch> begin_batch(const SessionRun& run);

@@ -49,7 +49,7 @@ void Session::end_step(Steps::iterator job) {
 }
 
 void Session::steps_stored_turn() {
-  while (!write_ && !stored_steps_.empty()) {
+  while (!wait_ && !stored_steps_.empty()) {
     VAT_CHECK(!ending_steps_.empty());
     const Failure failure = core_->history().note_write(stored_steps_.front());
     StepJob job = std::move(ending_steps_.front());
@@ -57,7 +57,7 @@ void Session::steps_stored_turn() {
     ending_steps_.pop_front();
     answer_step(std::move(job), failure);
   }
-  if (!stored_steps_.empty()) repeat_after_write(&Session::steps_stored_turn);
+  if (!stored_steps_.empty()) repeat_after_wait(&Session::steps_stored_turn);
 }
 
 void Session::answer_step(StepJob job, const Failure& failure) {
@@ -68,13 +68,13 @@ void Session::answer_step(StepJob job, const Failure& failure) {
   }
   put_back_.insert(put_back_.begin(), std::make_move_iterator(job.deferred.begin()),
                    std::make_move_iterator(job.deferred.end()));
-  while (!write_ && !holds_inbox_ && !put_back_.empty()) {
+  while (!wait_ && !holds_inbox_ && !put_back_.empty()) {
     Item item = std::move(put_back_.front());
     put_back_.pop_front();
     if (put_back(item)) return;
     execute(std::move(item));
   }
-  if (write_ && !put_back_.empty()) repeat_after_write(&Session::inbox_turn);
+  if (wait_ && !put_back_.empty()) repeat_after_wait(&Session::inbox_turn);
 }
 
 void Session::end_all_steps() {

@@ -55,7 +55,7 @@ void Session::step_turn() {
   if (steps_.empty() || seek_) return;  // end_seek() continues the steps
   if (!execute_pointers()) {
     step_scheduled_ = true;
-    return repeat_after_write(&Session::step_turn);
+    return repeat_after_wait(&Session::step_turn);
   }
   if (!has_place()) return;
   run_tick(clock_.now(), false);
@@ -72,8 +72,8 @@ void Session::tick_turn() {
   // A timer may have fired before the session was paused or its speed changed.
   const bool is_off = period_ == SteadyClock::duration::zero() || !core_->clock().playing();
   if (is_off || seek_ || now < ticks_.due()) return;
-  if (write_) return repeat_after_write(&Session::tick_turn);
-  if (!pointers_skip_tick_ && !execute_pointers()) return repeat_after_write(&Session::tick_turn);
+  if (wait_) return repeat_after_wait(&Session::tick_turn);
+  if (!pointers_skip_tick_ && !execute_pointers()) return repeat_after_wait(&Session::tick_turn);
   if (!has_place()) return;
   core_->environment().metrics.add_lateness(now - ticks_.due());
   run_tick(now, true);
@@ -84,7 +84,7 @@ void Session::tick_turn() {
 }
 
 void Session::run_tick(SteadyClock::time_point now, bool timed) {
-  VAT_CHECK(on_strand() && !seek_ && !write_);
+  VAT_CHECK(on_strand() && !seek_ && !wait_);
   const auto due = timed ? ticks_.due() : now;
   const auto begin = CostClock::now();
   const bool done = playback_ ? playback_->tick(*core_, now, timed) : core_->tick(now, timed);
@@ -172,7 +172,7 @@ void Session::status_turn() {
   wait_for_status();  // first, so that a fault does not end the statuses
   core_->notifier().presence().touch();
   // They count as moves of their grabs.
-  if (!execute_pointers()) return repeat_after_write(&Session::upkeep_turn);
+  if (!execute_pointers()) return repeat_after_wait(&Session::upkeep_turn);
   upkeep_turn();
 }
 

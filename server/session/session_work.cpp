@@ -6,8 +6,10 @@
 
 #include "core/support/check.h"
 #include "server/clients/answer_with.h"
+#include "server/session/core/command_entry.h"
 #include "server/session/session.h"
 #include "server/session/session_archive.h"
+#include "server/support/stage_clock.h"
 
 namespace vat {
 
@@ -23,6 +25,19 @@ void Session::start_reads() {
 void Session::reads_done_turn() {
   reads_.end_batch();
   start_reads();
+}
+
+void Session::post_behind(std::function<void()> task) {
+  boost::asio::post(strand_, [self = shared_from_this(), task = std::move(task)]() mutable {
+    if (self->uses_storage()) return self->tasks_behind_storage_.push_back(std::move(task));
+    self->run_behind_storage(std::move(task));
+  });
+}
+
+void Session::run_behind_storage(std::function<void()> task) {
+  boost::asio::post(storage_strand_, [self = shared_from_this(), task = std::move(task)]() mutable {
+    self->core_->notifier().post_behind_frames(std::move(task));
+  });
 }
 
 void Session::store_then(StoredTask task, const std::shared_ptr<PendingReply>& reply) {
@@ -45,9 +60,9 @@ void Session::export_recording(PendingReply reply) {
     pending->answer(not_allowed("this server offers no downloads"));
     return;
   }
-  // On the pool: the storage's thread has other sessions to store.
+  // Not on the storage's own thread, which has other sessions to store.
   const auto make = [self = shared_from_this(), pending](Storage& storage, std::uint64_t number) {
-    boost::asio::post(self->strand_.get_inner_executor(), [self, pending, &storage, number] {
+    boost::asio::post(self->storage_strand_, [self, pending, &storage, number] {
       answer_with(*pending, "session " + self->id() + ": no recording", [&] {
         return vat::export_recording(self->core_->environment(), self->id(), storage, number,
                                      self->summary().tick);
@@ -59,16 +74,55 @@ void Session::export_recording(PendingReply reply) {
   history.log()->store_then(history.moment(), clock_.now(), make);
 }
 
-void Session::save(PendingReply reply, SaveState save) {
-  // On the pool: the session continues meanwhile.
+void Session::use_storage(PendingReply reply, const SessionCommand& command, StorageWork work) {
+  const bool is_read = command.row->rate_class == RateClass::read;
+  if (is_read && reads_.refuse_excess(reply)) return;
   const auto pending = std::make_shared<PendingReply>(std::move(reply));
-  boost::asio::post(strand_.get_inner_executor(),
-                    [self = shared_from_this(), pending, save = std::move(save),
-                     moment = moment_to_save(*core_), &environment = core_->environment()] {
-                      answer_with(*pending, "session " + self->id() + ": not saved", [&] {
-                        return save_state(environment, self->id(), moment, save);
-                      });
-                    });
+  boost::asio::post(storage_strand_, [self = shared_from_this(), pending, is_read,
+                                      name = command.row->name, tick = core_->run().tick(),
+                                      budget = reads_.budget(), work = std::move(work.work)] {
+    answer_with(*pending, "session " + self->id() + ": " + std::string(name), [&] {
+      const auto begin = thread_time();
+      RpcResult result = work();
+      auto* const content = std::get_if<Json>(&result);
+      if (content == nullptr) return result;
+      content->emplace("tick", tick);
+      if (is_read) {
+        charge_read(*budget, *pending->client(), content->dump().size(), thread_time() - begin,
+                    self->clock_.now());
+      }
+      return result;
+    });
+  });
+}
+
+void Session::invite(PendingReply reply, const IssueInvitation& wanted) {
+  const SessionEnvironment& environment = core_->environment();
+  environment.tokens.issue(
+      {wanted.role, id(), true}, wanted.uses, wanted.time,
+      [wanted, tick = core_->run().tick(), maximum = environment.limits.max_tokens,
+       pending =
+           std::make_shared<PendingReply>(std::move(reply))](const AccessTokens::Issued& issued) {
+        if (issued.failure) return pending->answer(storage_failed(*issued.failure));
+        if (!issued.token) return pending->answer(limit_reached("tokens", maximum));
+        pending->answer(Json{{"token", *issued.token},
+                             {"role", to_string(wanted.role)},
+                             {"expires", wanted.time.count()},
+                             {"tick", tick}});
+      });
+}
+
+void Session::resolve_then(SessionCommand command, std::function<void(SessionCommand)> then) {
+  const auto resolved = std::make_shared<SessionCommand>(std::move(command));
+  wait_then(
+      [self = shared_from_this(), resolved](Journal::Done done) {
+        boost::asio::post(self->storage_strand_, [self, resolved, done = std::move(done)] {
+          resolved->resolution = std::make_shared<const CommandResolution>(
+              resolve_command(self->core_->environment(), self->id(), *resolved));
+          done({});
+        });
+      },
+      [resolved, then = std::move(then)](auto) { then(std::move(*resolved)); });
 }
 
 }  // namespace vat

@@ -11,7 +11,7 @@ namespace vat {
 
 void Session::log_then(std::vector<LogEntry> entries,
                        std::function<void(std::span<const LogEntry>, const Failure&)> work) {
-  VAT_CHECK(on_strand() && !write_);
+  VAT_CHECK(on_strand() && !wait_);
   core_->history().number(entries);
   if (core_->history().log() == nullptr || entries.empty()) return work(entries, {});
   has_held_inbox_ = false;
@@ -27,42 +27,39 @@ void Session::log_then(std::vector<LogEntry> entries,
 
 void Session::write_then(const std::function<void(SessionLog&, Journal::Done)>& write,
                          std::function<void(const Failure&)> then) {
-  VAT_CHECK(on_strand() && !write_);
   SessionLog* const log = core_->history().log();
   VAT_CHECK(log != nullptr);
-  write_.emplace(
-      LogWrite{std::move(then), {}, boost::asio::make_work_guard(strand_.get_inner_executor())});
-  write(*log, [self = shared_from_this()](std::optional<StorageError::Kind> failure) {
+  wait_then(
+      [log, write](Journal::Done done) { write(*log, std::move(done)); },
+      [this, then = std::move(then)](auto failure) { then(core_->history().note_write(failure)); });
+}
+
+void Session::wait_then(const std::function<void(Journal::Done)>& start,
+                        std::function<void(std::optional<StorageError::Kind>)> then) {
+  VAT_CHECK(on_strand() && !wait_);
+  wait_.emplace(
+      StorageWait{std::move(then), {}, boost::asio::make_work_guard(strand_.get_inner_executor())});
+  start([self = shared_from_this()](std::optional<StorageError::Kind> failure) {
     boost::asio::post(self->strand_, [self, failure] {
-      self->write_->failure = failure;
-      self->run_turn(&Session::written_turn);
+      self->wait_->failure = failure;
+      self->run_turn(&Session::waited_turn);
     });
   });
 }
 
-void Session::written_turn() {
-  VAT_CHECK(write_.has_value());
-  const LogWrite ended = *std::exchange(write_, std::nullopt);
-  ended.then(core_->history().note_write(ended.failure));
+void Session::waited_turn() {
+  VAT_CHECK(wait_.has_value());
+  const StorageWait ended = *std::exchange(wait_, std::nullopt);
+  ended.then(ended.failure);
   resume_turns();
 }
 
 void Session::resume_turns() {
-  while (!write_ && !closed_ && !waiting_turns_.empty()) {
+  while (!wait_ && !closed_ && !waiting_turns_.empty()) {
     const Turn turn = waiting_turns_.front();
     waiting_turns_.erase(waiting_turns_.begin());
     (this->*turn)();
   }
-}
-
-void Session::end_departures(const std::function<void()>& then) {
-  std::vector<LogEntry> due = core_->people().due_entries(clock_.now());
-  if (due.empty()) return then();
-  log_then(std::move(due), [this, then](std::span<const LogEntry> entries, const Failure& failure) {
-    // After a failure, the departures stay due.
-    if (!failure) core_->people().execute(entries);
-    then();
-  });
 }
 
 void Session::store_settings(PendingReply reply, SessionSettings settings) {

@@ -32,13 +32,14 @@ void Journal::post(Write write, Done done) {
   {
     const std::lock_guard lock(mutex_);
     waiting_.push_back({std::move(write), std::move(done), clock_.now()});
+    ++posted_;
   }
   wakes_.notify_one();
 }
 
 void Journal::flush() {
   std::unique_lock lock(mutex_);
-  idle_.wait(lock, [this] { return waiting_.empty() && !is_writing_; });
+  idle_.wait(lock, [this, last = posted_] { return finished_ >= last; });
 }
 
 SteadyClock::duration Journal::expected_time() const {
@@ -58,13 +59,13 @@ void Journal::run() {
     wakes_.wait(lock, [this] { return stopping_ || !waiting_.empty(); });
     if (waiting_.empty()) return;
     Group group = std::exchange(waiting_, {});
-    is_writing_ = true;
+    const std::size_t count = group.size();
     lock.unlock();
     write(group);
-    group.clear();
+    group.clear();  // what it holds may end with the caller of flush()
     lock.lock();
-    is_writing_ = false;
-    if (waiting_.empty()) idle_.notify_all();
+    finished_ += count;
+    idle_.notify_all();
   }
 }
 
@@ -113,7 +114,12 @@ void Journal::finish(std::span<Entry> entries, Failure failure) {
     }
   }
   for (const Entry& entry : entries) {
-    if (entry.done) entry.done(failure);
+    if (!entry.done) continue;
+    try {
+      entry.done(failure);
+    } catch (const std::exception& error) {
+      spdlog::error("after a write to the journal: {}", error.what());
+    }
   }
 }
 

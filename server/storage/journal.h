@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <functional>
 #include <mutex>
 #include <optional>
@@ -23,7 +24,7 @@ class Journal {
   /// failure, the journal may call the function again.
   using Write = std::function<void()>;
   /// Function for the completion of a write, with the error if the write failed. A failed write has
-  /// no effect. Must not throw or wait.
+  /// no effect. Must not wait.
   using Done = std::function<void(std::optional<StorageError::Kind> failure)>;
 
   /// The database and the clock must outlive the journal.
@@ -68,7 +69,8 @@ class Journal {
   std::condition_variable wakes_;
   std::condition_variable idle_;
   Group waiting_;
-  bool is_writing_ = false;
+  std::uint64_t posted_ = 0;    // number of calls of post()
+  std::uint64_t finished_ = 0;  // number of them that are complete
   bool stopping_ = false;
   StorageCounts counts_;
   // Mean and mean deviation of the times of recent writes [s], as in RFC 6298.

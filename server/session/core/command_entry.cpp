@@ -4,59 +4,83 @@
 
 #include <utility>
 
+#include "core/support/check.h"
 #include "server/session/core/saved_state.h"
 #include "server/session/core/scene_loading.h"
 
 namespace vat {
 namespace {
 
-using EntryResult = std::variant<CommandEntry, RpcError>;
-
-EntryResult make_load_entry(const SessionContext& context, const SessionHistory& history,
-                            const ParticipantCommand& command) {
-  const SessionEnvironment& environment = *context.environment;
-  Json params = command.command.params;
-  std::optional<SessionAction> action;
-  Json& scene = params.at("scene");
-  if (const Scene* named = scene.is_string()
-                               ? environment.catalogue.find(scene.get_ref<const std::string&>())
-                               : nullptr) {
-    scene = write_scene(*named);
-  } else if (scene.is_string()) {
-    auto saved = find_saved_scene(scene.get_ref<const std::string&>(), environment);
-    if (auto* error = std::get_if<RpcError>(&saved)) return std::move(*error);
-    scene = std::get<Json>(std::move(saved));
-    action = environment.methods.make(kLoadMethod, params).action;
-  }
-  return CommandEntry{history.make_entry(command.participant, kLoadMethod, params.dump()),
-                      std::move(action)};
+/// Returns the name in the parameter `scene` of scene.load, or null if it is a scene.
+const std::string* scene_name(const SessionCommand& command) {
+  const Json& scene = command.params.at("scene");
+  return scene.is_string() ? &scene.get_ref<const std::string&>() : nullptr;
 }
 
-EntryResult make_restore_entry(const SessionContext& context, const SessionHistory& history,
-                               const ParticipantCommand& command) {
-  const auto& name = command.command.params.at("name").get_ref<const std::string&>();
-  SavedStates* const states = context.environment->states;
-  const auto state = states == nullptr ? std::nullopt : states->find(context.id, name);
+CommandResolution resolve_scene(const SessionEnvironment& environment,
+                                const SessionCommand& command) {
+  auto saved = find_saved_scene(*scene_name(command), environment);
+  if (auto* error = std::get_if<RpcError>(&saved)) return std::move(*error);
+  Json params = command.params;
+  params["scene"] = std::get<Json>(std::move(saved));
+  std::string text = params.dump();
+  return ResolvedCommand{std::move(text),
+                         environment.methods.make(kLoadMethod, std::move(params)).action};
+}
+
+CommandResolution resolve_state(const SessionEnvironment& environment, const std::string& session,
+                                const SessionCommand& command) {
+  const auto& name = command.params.at("name").get_ref<const std::string&>();
+  SavedStates* const states = environment.states;
+  const auto state = states == nullptr ? std::nullopt : states->find(session, name);
   if (!state) return no_such_state(name);
   const Json params = params_of_restore(*state);
-  return CommandEntry{history.make_entry(command.participant, kRestoreEntry, params.dump()),
-                      read_restore(params)};
+  return ResolvedCommand{params.dump(), read_restore(params)};
 }
 
 }  // namespace
 
-EntryResult make_command_entry(const SessionContext& context, const SessionHistory& history,
-                               const ParticipantCommand& command) {
-  const std::string_view method = command.command.row->name;
+bool names_saved_data(const SessionEnvironment& environment, const SessionCommand& command) {
+  const std::string_view method = command.row->name;
+  if (method == kLoadStateMethod) return true;
+  if (method != kLoadMethod) return false;
+  const std::string* const name = scene_name(command);
+  return name != nullptr && environment.catalogue.find(*name) == nullptr;
+}
+
+CommandResolution resolve_command(const SessionEnvironment& environment, const std::string& session,
+                                  const SessionCommand& command) {
   try {
-    if (method == kLoadMethod) return make_load_entry(context, history, command);
-    if (method == kLoadStateMethod) return make_restore_entry(context, history, command);
+    if (command.row->name == kLoadMethod) return resolve_scene(environment, command);
+    return resolve_state(environment, session, command);
   } catch (const StorageError& error) {
-    spdlog::error("session {}: {}", context.id, error.what());
+    spdlog::error("session {}: {}", session, error.what());
     return storage_failed(error.kind());
+  } catch (const std::exception& error) {
+    spdlog::error("session {}: {}", session, error.what());
+    return internal_error();
   }
-  return CommandEntry{
-      history.make_entry(command.participant, method, command.command.params.dump()), {}};
+}
+
+std::variant<CommandEntry, RpcError> make_command_entry(const SessionEnvironment& environment,
+                                                        const SessionHistory& history,
+                                                        const ParticipantCommand& of_participant) {
+  const auto& [participant, command] = of_participant;
+  const std::string_view method = command.row->name;
+  if (names_saved_data(environment, command)) {
+    VAT_CHECK(command.resolution != nullptr);
+    if (const auto* error = std::get_if<RpcError>(command.resolution.get())) return *error;
+    const auto& resolved = std::get<ResolvedCommand>(*command.resolution);
+    const std::string_view entry_method = method == kLoadMethod ? kLoadMethod : kRestoreEntry;
+    return CommandEntry{history.make_entry(participant, entry_method, resolved.params),
+                        resolved.action};
+  }
+  if (method == kLoadMethod && scene_name(command) != nullptr) {
+    Json params = command.params;
+    params["scene"] = write_scene(*environment.catalogue.find(*scene_name(command)));
+    return CommandEntry{history.make_entry(participant, method, params.dump()), {}};
+  }
+  return CommandEntry{history.make_entry(participant, method, command.params.dump()), {}};
 }
 
 }  // namespace vat

@@ -14,9 +14,16 @@ struct CommandEntry {
   std::optional<SessionAction> action;  ///< if present, replaces the command's action
 };
 
-/// Returns the log entry of a command. The entry contains the content of scenes and saved states
-/// instead of their names, because the named content can change later.
-std::variant<CommandEntry, RpcError> make_command_entry(const SessionContext& context,
+/// Returns whether the command names a saved scene or state. Its log entry then contains the saved
+/// data, because the named data can change later.
+bool names_saved_data(const SessionEnvironment& environment, const SessionCommand& command);
+
+/// Reads the saved data that a command of the session names. Called on a storage thread.
+CommandResolution resolve_command(const SessionEnvironment& environment, const std::string& session,
+                                  const SessionCommand& command);
+
+/// Returns the log entry of a command. A command that names saved data must be resolved.
+std::variant<CommandEntry, RpcError> make_command_entry(const SessionEnvironment& environment,
                                                         const SessionHistory& history,
                                                         const ParticipantCommand& command);
 

@@ -1,7 +1,11 @@
 #pragma once
 
+#include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -32,10 +36,18 @@ struct SeekTo {
   std::uint64_t position = 0;
 };
 
-/// Request to save the session's state under a name.
-struct SaveState {
-  std::string name;
-  std::string saved_by;
+/// Read or write of saved data, which may wait for the disk.
+struct StorageWork {
+  /// Returns the content of the reply, or an error. Called on a storage thread. May throw
+  /// StorageError.
+  std::function<RpcResult()> work;
+};
+
+/// Request for an invitation to the session.
+struct IssueInvitation {
+  Role role = Role::viewer;
+  std::optional<std::size_t> uses;  ///< absent: unlimited
+  std::chrono::seconds time{0};     ///< validity period
 };
 
 /// Request to store and apply settings of the session.
@@ -55,11 +67,19 @@ struct Read {
 
 /// Result of an action: content of the reply, an error, or work before the reply. The session adds
 /// the member `tick` to the content.
-using ActionResult =
-    std::variant<Json, RpcError, RunTicks, MakeRecording, SeekTo, SaveState, StoreSettings, Read>;
+using ActionResult = std::variant<Json, RpcError, RunTicks, MakeRecording, SeekTo, StorageWork,
+                                  IssueInvitation, StoreSettings, Read>;
 
 /// Function that executes a command with valid parameters.
 using SessionAction = std::function<ActionResult(SessionCore&, Participant&)>;
+
+/// Saved data that a command names: parameters that contain the data instead of its name, and the
+/// action to execute. Or the error of the command.
+struct ResolvedCommand {
+  std::string params;  ///< JSON object
+  SessionAction action;
+};
+using CommandResolution = std::variant<ResolvedCommand, RpcError>;
 
 /// Call of a session method with valid parameters.
 // NOLINTNEXTLINE(bugprone-exception-escape): the library says that moves of JSON do not throw
@@ -67,6 +87,8 @@ struct SessionCommand {
   const MethodRow* row = nullptr;
   Json params;  ///< a JSON object
   SessionAction action;
+  /// Result of resolve_command(), if the command names saved data.
+  std::shared_ptr<const CommandResolution> resolution = nullptr;
 };
 
 /// Command, and the participant that sent it.

@@ -100,7 +100,7 @@ CommandBatch SessionCore::prepare(std::span<const ParticipantCommand> commands) 
   for (const ParticipantCommand& command : commands) {
     CommandBatch::Item& item = batch.items.emplace_back(CommandBatch::Item{command, {}, {}});
     if (!command.command.row->is_logged()) continue;
-    auto made = make_command_entry(context_, history_, command);
+    auto made = make_command_entry(environment(), history_, command);
     if (auto* entry = std::get_if<CommandEntry>(&made)) {
       batch.entries.push_back(std::move(entry->entry));
       item.action = std::move(entry->action);

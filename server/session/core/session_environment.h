@@ -37,6 +37,8 @@ struct SessionEnvironment {
   SavedStates* states = nullptr;
   SavedScenes* scenes = nullptr;
   const MemoryLimit* memory = nullptr;  ///< limit for new simulations; null: no limit
+  /// Threads that may wait for the disk: reads and writes of saved data. Null: like `states`.
+  boost::asio::thread_pool* storage_threads = nullptr;
 };
 
 }  // namespace vat

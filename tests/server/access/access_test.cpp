@@ -180,10 +180,18 @@ TEST_F(Access, AResumeTokenLetsItsParticipantInAgainAndNothingElse) {
   EXPECT_EQ(connect()->error("access.enter", {{"token", joined.at("resume")}}).at("code"), 1007);
 }
 
+std::optional<std::string> issue_token(AccessTokens& tokens, std::optional<std::size_t> uses,
+                                       std::chrono::seconds time) {
+  std::optional<std::string> token;
+  tokens.issue({Role::viewer, "s1", true}, uses, time,
+               [&](const AccessTokens::Issued& issued) { token = issued.token; });
+  return token;
+}
+
 TEST(AccessTokens, AreGoodUntilTheirEnd) {
   ManualClock clock;
   AccessTokens tokens(10, clock);
-  const TokenHash token = hash_of_token(tokens.issue({Role::viewer, "s1", true}, {}, 60s).value());
+  const TokenHash token = hash_of_token(issue_token(tokens, {}, 60s).value());
   clock.advance(60s - 1ns);
   EXPECT_TRUE(tokens.use(token));
   clock.advance(1ns);
@@ -193,9 +201,7 @@ TEST(AccessTokens, AreGoodUntilTheirEnd) {
 TEST(AccessTokens, AreBoundedAndOldOnesMakeRoom) {
   ManualClock clock;
   AccessTokens tokens(2, clock);
-  const auto issue = [&](std::chrono::seconds time) {
-    return tokens.issue({Role::viewer, "s1", true}, 1, time);
-  };
+  const auto issue = [&](std::chrono::seconds time) { return issue_token(tokens, 1, time); };
   EXPECT_TRUE(issue(10s));
   const auto second = issue(100s);
   clock.advance(9s);

@@ -3,11 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "tests/server/fixture/host.h"
 #include "tests/server/fixture/test_disk.h"
@@ -21,6 +23,7 @@ using testing::HasSubstr;
 class SessionDurability : public testing::Test {
  protected:
   SessionDurability() { begin(); }
+  ~SessionDurability() override { disk.release_syncs(); }  // a failed test may hold them
   void begin() { host.emplace(catalogue, folder.file("data"), unhurried_limits(), clock); }
   TestClient& client() { return *host->client; }
   bool has_reply(int id) {
@@ -140,6 +143,63 @@ TEST_F(SessionDurability, SettingsThatCannotBeStoredDoNotChange) {
             "storage_failed");
   disk.fail({});
   EXPECT_EQ(admin->result("session.configure", {{"locked", true}}).at("name"), "first");
+}
+
+// More sessions wait for the disk than the server has threads for sessions.
+TEST_F(SessionDurability, WhileTheDiskIsBlockedOtherSessionsContinue) {
+  constexpr int kBusySessions = 6;
+  TestServer& server = host->server;
+  const Json scene = Json::parse(mixed_scene_text());
+  std::vector<std::unique_ptr<TestClient>> busy;
+  std::vector<std::string> ids;
+  for (int i = 0; i < kBusySessions; ++i) {
+    busy.push_back(std::make_unique<TestClient>(server, 10 + i));
+    ids.push_back(
+        busy[i]->result("session.create", {{"name", "busy"}, {"scene", scene}}).at("session"));
+    busy[i]->result("session.join", {{"session", ids[i]}});
+    busy[i]->result("control.pause");
+    busy[i]->result("session.save", {{"name", "a"}});
+  }
+  client().result("scene.save", {{"name", "mine"}});
+  client().result("control.play");
+  server.flush();
+  disk.hold_syncs();
+  std::vector<std::pair<TestClient*, int>> waiting;
+  const auto send = [&](TestClient& to, std::string_view method, const Json& params) {
+    waiting.emplace_back(&to, to.send(method, params));
+  };
+  for (int i = 0; i < kBusySessions; ++i) {
+    TestClient& one = *busy[i];
+    if (i % 2 == 0) send(one, "session.invite", {{"role", "viewer"}});
+    send(one, "session.save", {{"name", "b"}});
+    send(one, "scene.save", {{"name", "of " + ids[i]}});
+    send(one, "scene.get", {{"scene", "mine"}});
+    send(one, "session.saves", Json::object());
+    send(one, "session.load", {{"name", "b"}});
+    send(one, "world.set_gravity", kGravity);
+    send(one, "session.leave", Json::object());
+    send(one, "session.create", {{"name", "new"}, {"scene", "mixed"}});
+    send(one, "scene.list", Json::object());
+    send(one, "scene.delete", {{"name", "mine"}});
+    if (i == 5) send(one, "session.close", {{"session", ids[i]}});
+  }
+  disk.wait_for_held_sync();
+
+  std::uint64_t tick = client().result("session.stats").at("tick");
+  for (int i = 0; i < 40; ++i) {  // before the first timer of the blocked storage thread
+    clock.advance(std::chrono::milliseconds(20));
+    const std::uint64_t now = client().result("session.hash").at("tick");
+    EXPECT_EQ(now, tick + 1);
+    tick = now;
+  }
+  TestClient other(server, 2);
+  other.result("server.info");
+  other.result("session.list");
+  other.result("session.join", {{"session", "s1"}});
+  other.result("state.query");
+  EXPECT_FALSE(server.metrics().empty());
+  disk.release_syncs();
+  for (const auto& [to, id] : waiting) to->wait_reply(id);
 }
 
 TEST_F(SessionDurability, HealthShowsTheSetting) {

@@ -27,6 +27,7 @@ using Failure = std::optional<StorageError::Kind>;
 class JournalTest : public testing::Test {
  protected:
   JournalTest() { open(Durability::power); }
+  ~JournalTest() override { disk.release_syncs(); }  // a failed test may hold them
 
   void open(Durability durability) {
     journal.reset();

@@ -1,0 +1,67 @@
+// Joins and departures of participants.
+
+#include <memory>
+#include <utility>
+
+#include "core/support/check.h"
+#include "server/session/session.h"
+
+namespace vat {
+
+void Session::execute_join(PendingReply reply, const SessionInbox::Join& join) {
+  auto joined = core_->people().join(reply.client(), join.membership, join.request, clock_.now());
+  if (auto* error = std::get_if<RpcError>(&joined)) {
+    join.undo();
+    reply.answer(std::move(*error));
+    return;
+  }
+  const auto& result = std::get<JoinedParticipant>(joined);
+  const auto waiting = std::make_shared<PendingReply>(std::move(reply));
+  // First, because the connection may have been another participant's.
+  end_departures([this, waiting, number = result.participant.number, resume = result.resume,
+                  resumed = result.resumed] {
+    update_summary();  // before the answer, as below: lists then show what was done
+    const Participant* participant = core_->participants().find(number);
+    VAT_CHECK(participant != nullptr);
+    const Json content{{"tick", core_->run().tick()},
+                       {"session", id()},
+                       {"participant", number},
+                       {"name", participant->name},
+                       {"role", to_string(participant->role)},
+                       {"resume", resume},
+                       {"resumed", resumed},
+                       {"settings", core_->people().describe_settings()},
+                       {"participants", describe_participants(core_->participants())}};
+    const auto description = core_->notifier().description();
+    waiting->answer_text(begin_object(content, "description") + description.begin, description.end);
+  });
+}
+
+void Session::execute_leave(PendingReply reply) {
+  const ConnectionId client = reply.client()->id();
+  if (const Participant* participant = core_->participants().find_client(client)) {
+    core_->people().leave(participant->number);
+  }
+  const auto waiting = std::make_shared<PendingReply>(std::move(reply));
+  end_departures([this, waiting] {
+    update_summary();
+    waiting->answer(Json{{"tick", core_->run().tick()}});
+  });
+}
+
+void Session::execute_disconnect(const PendingReply& reply) {
+  core_->people().disconnect(reply.client()->id(), clock_.now());
+  end_departures([] {});
+}
+
+void Session::end_departures(const std::function<void()>& then) {
+  std::vector<LogEntry> due = core_->people().due_entries(clock_.now());
+  if (due.empty()) return then();
+  log_then(std::move(due), [this, then](std::span<const LogEntry> entries, const Failure& failure) {
+    // After a failure, the departures stay due.
+    if (!failure) core_->people().execute(entries);
+    then();
+  });
+}
+
+}  // namespace vat
