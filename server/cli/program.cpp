@@ -20,6 +20,7 @@ int run_command(int argc, char** argv) {
   add_validate_command(app, exit_code);
   add_script_command(app, exit_code);
   add_replay_command(app, exit_code);
+  add_backup_commands(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -12,6 +12,7 @@ namespace vat {
 namespace {
 
 constexpr auto kProgressInterval = std::chrono::seconds(1);
+constexpr std::size_t kHashesAtOnce = 512;  // about ten seconds
 
 std::size_t bytes_of(std::span<const LogEntry> entries) {
   std::size_t bytes = 0;
@@ -85,8 +86,9 @@ void SessionLog::configure(std::string name, std::string settings, Journal::Done
 }
 
 bool SessionLog::is_checkpoint_due() const {
-  return writing_->needs_checkpoint ||
-         pace_.is_due(CheckpointPace::Seconds(writing_->checkpoint_cost));
+  if (writing_->needs_checkpoint) return true;
+  return pace_.is_due(CheckpointPace::Seconds(writing_->checkpoint_cost)) &&
+         storage_.admits_checkpoint();
 }
 
 bool SessionLog::is_due(std::uint64_t position, std::uint64_t people,
@@ -107,8 +109,10 @@ void SessionLog::store(SessionMoment moment, SteadyClock::time_point now, bool a
   stored_people_ = moment.people;
   stored_at_ = now;
   writing_->under_way = true;
+  std::vector<TickHash> hashes;
+  if (with_checkpoint || hashes_.size() >= kHashesAtOnce) hashes.swap(hashes_);
   storage_.post([&storage = storage_, session = session_, moment = std::move(moment),
-                 hashes = std::exchange(hashes_, {}), with_checkpoint, writing = writing_] {
+                 hashes = std::move(hashes), with_checkpoint, writing = writing_] {
     const auto end = [writing](auto) { writing->under_way = false; };
     storage.journal().post(
         [&storage, session, progress = moment.progress()] {
@@ -132,15 +136,12 @@ void SessionLog::store_then(SessionMoment moment, SteadyClock::time_point now,
 void SessionLog::write_checkpoint(Storage& storage, std::uint64_t session,
                                   const SessionMoment& moment, Writing& writing) {
   const auto begin = thread_time();
-  storage.checkpoints().write(
+  const std::size_t bytes = storage.checkpoints().write(
       {session, moment.position, moment.sequence, moment.fields(), moment.snapshot.to_bytes()});
   // Processor time, without waits that do not delay other sessions.
   const CheckpointPace::Seconds cost = thread_time() - begin;
   writing.checkpoint_cost = cost.count();
-  storage.count_checkpoint(cost);
-  const bool is_needed = writing.needs_checkpoint || is_log_full(storage, writing.log_bytes);
-  if (!is_needed) return;
-  storage.checkpoints().sync();  // before the log that it replaces is removed or continued
+  storage.count_checkpoint(cost, bytes);
   writing.needs_checkpoint = false;
   bound_log(storage, session, moment, writing);
 }

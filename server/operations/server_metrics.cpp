@@ -86,6 +86,8 @@ void append_present(std::string& text, const ServerMetrics::Gauges& now) {
   append_sample(text, "vat_journal_commit_seconds_total", "", now.storage.commit_time.count());
   append_counter(text, "vat_checkpoints_total", "Written checkpoints of sessions.",
                  now.storage.checkpoints);
+  append_counter(text, "vat_checkpoint_bytes_total", "Size of these checkpoints.",
+                 now.storage.checkpoint_bytes);
   append_head(text, "vat_checkpoint_seconds_total", "counter",
               "Processor time of the writing of checkpoints.");
   append_sample(text, "vat_checkpoint_seconds_total", "", now.storage.checkpoint_time.count());

@@ -275,13 +275,20 @@ std::vector<Setting> storage_group(ServeSettings& s) {
                    "a crash of the server, without waits for the disk"),
       time_setting("checkpoint_seconds", s.storage.checkpoint_after, 0.001, kMaxSeconds,
                    "Computing time between two checkpoints of a session, which recovery repeats at "
-                   "most; longer if checkpoints would take more than 5 % of the time"),
+                   "most; longer if checkpoints would take more than 5 % of the time or exceed "
+                   "checkpoint_bytes_per_second"),
+      number_setting("checkpoint_bytes_per_second", s.storage.checkpoint_bytes_per_second, 1024,
+                     1e9, "Written bytes of all checkpoints; the default is 15.6 GB per day"),
       time_setting(
           "drain_seconds", s.drain_time, 0, kMaxSeconds,
           "Time between SIGTERM and the end of the server, in which clients stay connected"),
       number_setting<std::size_t>(
           "checkpoint_bytes", s.storage.checkpoint_bytes, kMinBytes, kMaxBytesKept,
           "Total size of one session's checkpoints; beyond it, the server thins older ones"),
+      number_setting<std::size_t>(
+          "checkpoint_bytes_in_all", s.storage.checkpoint_bytes_in_all, kMinBytes, kMaxBytesKept,
+          "Total size of all checkpoints; beyond it, the server thins those of the session with "
+          "the largest"),
       number_setting<std::size_t>(
           "log_bytes", s.storage.log_bytes, kMinBytes, kMaxBytesKept,
           "Size of one session's command log; beyond it, the server deletes the oldest part"),

@@ -8,7 +8,6 @@
 #include "core/support/byte_io.h"
 #include "core/support/check.h"
 #include "server/storage/sqlite/compression.h"
-#include "server/storage/sqlite/schema.h"
 
 namespace vat {
 namespace {
@@ -55,13 +54,15 @@ std::size_t find_redundant(const std::vector<CheckpointPlace>& places) {
 
 }  // namespace
 
-CheckpointStore::CheckpointStore(const std::string& path, std::size_t session_bytes)
+CheckpointStore::CheckpointStore(const std::string& path, std::size_t session_bytes,
+                                 std::size_t bytes_in_all)
     : session_bytes_(session_bytes),
-      // A lost checkpoint only makes a recovery repeat more. sync() is for the other cases.
-      database_(
-          open_database(path, {kCheckpointApplication, kCheckpointSteps}, Durability::process)),
-      mover_(path, Database::Mode::create) {
-  mover_.use_log(Durability::process);
+      bytes_in_all_(bytes_in_all),
+      database_(open_database(path, checkpoint_schema(), Durability::power, Journaling::rollback)) {
+}
+
+Schema checkpoint_schema() {
+  return {kCheckpointApplication, kCheckpointSteps};
 }
 
 std::size_t CheckpointStore::write(const Checkpoint& checkpoint) {
@@ -79,6 +80,7 @@ std::size_t CheckpointStore::write(const Checkpoint& checkpoint) {
       .bind(4, std::span<const std::uint8_t>(state))
       .run();
   thin(checkpoint.session);
+  thin_all();
   transaction.commit();
   return state.size();
 }
@@ -114,6 +116,27 @@ void CheckpointStore::thin(std::uint64_t session) {
     bytes -= places[redundant].bytes;
     places.erase(places.begin() + static_cast<std::ptrdiff_t>(redundant));
   }
+}
+
+void CheckpointStore::thin_all() {
+  VAT_CHECK(mutex_.is_held());
+  for (;;) {
+    const std::int64_t bytes =
+        database_.number("SELECT coalesce(sum(length(state)), 0) FROM checkpoints");
+    if (static_cast<std::size_t>(bytes) <= bytes_in_all_) return;
+    Statement query = database_.prepare(
+        "SELECT session FROM checkpoints GROUP BY session HAVING count(*) > 1"
+        " ORDER BY sum(length(state)) DESC LIMIT 1");
+    if (!query.step()) return;
+    const std::uint64_t largest = query.count(0);
+    query.reset();
+    remove_redundant(largest);
+  }
+}
+
+void CheckpointStore::remove_redundant(std::uint64_t session) {
+  const std::vector<CheckpointPlace> places = places_locked(session);
+  remove_row(places[find_redundant(places)].row);
 }
 
 void CheckpointStore::remove_row(std::uint64_t row) {
@@ -227,6 +250,8 @@ void CheckpointStore::keep_only(const std::vector<std::uint64_t>& sessions) {
   for (const std::uint64_t session : gone) {
     database_.prepare("DELETE FROM checkpoints WHERE session = ?").bind(0, session).run();
     database_.prepare("DELETE FROM hashes WHERE session = ?").bind(0, session).run();
+  }
+  while (!gone.empty() && database_.compact()) {
   }
 }
 

@@ -2,12 +2,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "server/storage/sqlite/database.h"
+#include "server/storage/sqlite/schema.h"
 #include "server/support/owned_mutex.h"
 
 namespace vat {
@@ -36,14 +38,18 @@ struct TickHash {
 };
 
 /// Store of compressed checkpoints and of state hashes. Uses a separate database, so that writes do
-/// not delay commands. Thread-safe. Functions throw StorageError.
+/// not delay commands. Writes survive a power failure. Thread-safe. Functions throw StorageError.
 class CheckpointStore {
  public:
-  /// `session_bytes` limits the size of a session's checkpoints, see write().
-  CheckpointStore(const std::string& path, std::size_t session_bytes);
+  /// `session_bytes` limits the size of a session's checkpoints, and `bytes_in_all` the size of all
+  /// checkpoints; see write().
+  CheckpointStore(const std::string& path, std::size_t session_bytes,
+                  std::size_t bytes_in_all = std::numeric_limits<std::size_t>::max());
 
   /// Writes a checkpoint. If the session then exceeds its size, removes the checkpoints whose
-  /// removal causes the smallest gaps. Returns the size of the checkpoint [bytes].
+  /// removal causes the smallest gaps. If all sessions together exceed their size, does the same
+  /// for the session with the largest checkpoints. Keeps the newest checkpoint of each session.
+  /// Returns the size of the checkpoint [bytes].
   std::size_t write(const Checkpoint& checkpoint);
   /// Returns the checkpoints in ascending order of position, then of sequence.
   std::vector<CheckpointPlace> places(std::uint64_t session);
@@ -62,25 +68,26 @@ class CheckpointStore {
   void drop_hashes(std::uint64_t session, std::uint64_t behind);
   static constexpr std::size_t kMaxHashes = 2'000'000;  ///< eleven hours at 50 ticks per second
 
-  /// Removes the checkpoints and hashes of all other sessions.
+  /// Removes the checkpoints and hashes of all other sessions, and frees their space on the disk.
   void keep_only(const std::vector<std::uint64_t>& sessions);
-
-  std::size_t move_log(bool wait) { return mover_.move_log(wait); }
-  /// Synchronises all written checkpoints with the disk. Must not be called together with
-  /// move_log().
-  void sync() { move_log(false); }
 
  private:
   std::vector<CheckpointPlace> places_locked(std::uint64_t session);
   void insert_hashes(std::uint64_t session, std::span<const TickHash> hashes);
   std::vector<TickHash> hashes_locked(std::uint64_t session, std::uint64_t from);
   void thin(std::uint64_t session);
+  void thin_all();
+  /// Removes the checkpoint of the session whose removal causes the smallest gap.
+  void remove_redundant(std::uint64_t session);
   void remove_row(std::uint64_t row);
 
   const std::size_t session_bytes_;
+  const std::size_t bytes_in_all_;
   OwnedMutex mutex_;
   Database database_;
-  Database mover_;
 };
+
+/// Returns the schema of the store's database.
+Schema checkpoint_schema();
 
 }  // namespace vat

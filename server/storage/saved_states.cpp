@@ -5,8 +5,6 @@
 #include <span>
 #include <string_view>
 
-#include "server/storage/sqlite/schema.h"
-
 namespace vat {
 namespace {
 
@@ -53,7 +51,11 @@ std::size_t bytes_of(const SavedState& state) {
 }  // namespace
 
 SavedStates::SavedStates(const std::string& path, Durability durability)
-    : database_(open_database(path, {kStateApplication, kStateSteps}, durability)) {}
+    : database_(open_database(path, state_schema(), durability)) {}
+
+Schema state_schema() {
+  return {kStateApplication, kStateSteps};
+}
 
 std::optional<LimitExcess> SavedStates::find_excess(const std::string& session,
                                                     const SavedState& state,
@@ -130,6 +132,8 @@ void SavedStates::remove_session(const std::string& session) {
   database_.prepare("DELETE FROM states WHERE session = ?")
       .bind(0, std::string_view(session))
       .run();
+  while (database_.compact()) {
+  }
 }
 
 void SavedStates::keep_only(const std::vector<std::string>& sessions) {

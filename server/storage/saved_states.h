@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "server/storage/sqlite/database.h"
+#include "server/storage/sqlite/schema.h"
 #include "server/support/limit_excess.h"
 
 namespace vat {
@@ -51,6 +52,7 @@ class SavedStates {
   std::optional<SavedState> find(const std::string& session, const std::string& name);
   /// Removes a state. Returns false if there is no such state.
   bool remove(const std::string& session, const std::string& name);
+  /// Removes the states of a session, and frees their space on the disk.
   void remove_session(const std::string& session);
   /// Removes the states of all other sessions.
   void keep_only(const std::vector<std::string>& sessions);
@@ -64,5 +66,8 @@ class SavedStates {
   std::mutex mutex_;
   Database database_;
 };
+
+/// Returns the schema of the store's database.
+Schema state_schema();
 
 }  // namespace vat

@@ -113,7 +113,14 @@ std::vector<std::uint64_t> SessionStore::remove_closed() {
     const std::lock_guard lock(mutex_);
     database_.prepare("DELETE FROM sessions WHERE number = ?").bind(0, session).run();
   }
+  while (!closed.empty() && compact_some()) {
+  }
   return closed;
+}
+
+bool SessionStore::compact_some() {
+  const std::lock_guard lock(mutex_);
+  return database_.compact();
 }
 
 void SessionStore::insert(std::uint64_t session, const LogEntry& entry) {

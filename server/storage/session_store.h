@@ -86,6 +86,8 @@ class SessionStore {
  private:
   /// The caller must hold the mutex.
   void insert(std::uint64_t session, const LogEntry& entry);
+  /// Frees some of the unused space. Returns false if there is no more.
+  bool compact_some();
 
   const std::shared_ptr<MainDatabase> main_;
   std::recursive_mutex& mutex_;

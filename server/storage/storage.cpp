@@ -13,6 +13,7 @@
 namespace vat {
 namespace {
 
+constexpr double kSavedSeconds = 60;  // of the budget of checkpoints
 constexpr auto kMoveInterval = std::chrono::seconds(1);
 // While commands arrive, the copied part of a log is not reused. Beyond this size they wait some
 // milliseconds once, so that it is.
@@ -40,11 +41,14 @@ Storage::Storage(const std::string& folder, const StorageSettings& settings, Clo
       settings_(settings),
       clock_(clock),
       sessions_(folder_.file("vat.db"), settings.durability),
-      checkpoints_(folder_.file("checkpoints.db"), settings.checkpoint_bytes),
+      checkpoints_(folder_.file("checkpoints.db"), settings.checkpoint_bytes,
+                   settings.checkpoint_bytes_in_all),
       states_(folder_.file("states.db"), settings.durability),
       scenes_(sessions_.main()),
       tokens_(sessions_.main()),
       journal_(*sessions_.main(), clock),
+      checkpoint_budget_(settings.checkpoint_bytes_per_second,
+                         kSavedSeconds * settings.checkpoint_bytes_per_second, clock.now()),
       move_timer_(clock.make_timer(thread_.get_executor())) {
   states_.keep_only(ids_of(sessions_.sessions()));
   remove_closed();
@@ -85,13 +89,24 @@ StorageCounts Storage::counts() const {
   StorageCounts counts = journal_.counts();
   counts.failures += failures_;
   counts.checkpoints = checkpoints_written_;
+  counts.checkpoint_bytes = checkpoint_bytes_;
   counts.checkpoint_time = std::chrono::nanoseconds(checkpoint_nanoseconds_);
   return counts;
 }
 
-void Storage::count_checkpoint(std::chrono::duration<double> cost) {
+bool Storage::admits_checkpoint() {
+  const std::lock_guard lock(budget_mutex_);
+  return !checkpoint_budget_.debt(clock_.now());
+}
+
+void Storage::count_checkpoint(std::chrono::duration<double> cost, std::size_t bytes) {
   VAT_CHECK(cost.count() >= 0);
+  {
+    const std::lock_guard lock(budget_mutex_);
+    checkpoint_budget_.charge(static_cast<double>(bytes), clock_.now());
+  }
   ++checkpoints_written_;
+  checkpoint_bytes_ += bytes;
   checkpoint_nanoseconds_ += static_cast<std::uint64_t>(cost.count() * 1e9);
 }
 
@@ -116,7 +131,6 @@ void Storage::wait_to_move() {
 
 void Storage::move_logs() {
   move_log(sessions_);
-  move_log(checkpoints_);
   move_log(states_);
 }
 

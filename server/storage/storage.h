@@ -5,6 +5,7 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <string>
 
 #include "server/storage/checkpoint_store.h"
@@ -17,6 +18,7 @@
 #include "server/storage/storage_counts.h"
 #include "server/storage/token_store.h"
 #include "server/support/clock.h"
+#include "server/support/token_bucket.h"
 
 namespace vat {
 
@@ -51,8 +53,11 @@ class Storage {
   StorageCounts counts() const;
   /// Counts a failed write.
   void count_failure() { ++failures_; }
-  /// Counts a checkpoint and its processor time.
-  void count_checkpoint(std::chrono::duration<double> cost);
+  /// Returns whether the budget of StorageSettings::checkpoint_bytes_per_second admits a checkpoint
+  /// now. The budget may be saved for a minute.
+  bool admits_checkpoint();
+  /// Counts a checkpoint, its processor time and its size, which the budget is charged with.
+  void count_checkpoint(std::chrono::duration<double> cost, std::size_t bytes);
 
  private:
   void run(const std::function<void()>& task);
@@ -71,6 +76,9 @@ class Storage {
   std::atomic<std::uint64_t> failures_ = 0;
   std::atomic<std::uint64_t> checkpoints_written_ = 0;
   std::atomic<std::uint64_t> checkpoint_nanoseconds_ = 0;
+  std::atomic<std::uint64_t> checkpoint_bytes_ = 0;
+  std::mutex budget_mutex_;
+  TokenBucket checkpoint_budget_;
   boost::asio::thread_pool thread_{1};
   // Members that only the storage's thread uses.
   const std::unique_ptr<Timer> move_timer_;

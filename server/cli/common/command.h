@@ -40,5 +40,7 @@ void add_validate_command(CLI::App& app, int& exit_code);
 void add_script_command(CLI::App& app, int& exit_code);
 /// Adds `vat replay`.
 void add_replay_command(CLI::App& app, int& exit_code);
+/// Adds `vat backup` and `vat restore`.
+void add_backup_commands(CLI::App& app, int& exit_code);
 
 }  // namespace vat

@@ -95,6 +95,30 @@ void Database::use_log(Durability durability) {
                                           : "PRAGMA synchronous = NORMAL");
 }
 
+void Database::use_rollback() {
+  execute("PRAGMA journal_mode = TRUNCATE; PRAGMA synchronous = FULL; PRAGMA temp_store = MEMORY");
+}
+
+void Database::enable_compaction() {
+  constexpr std::int64_t kIncremental = 2;
+  if (number("PRAGMA auto_vacuum") == kIncremental) return;
+  execute("PRAGMA auto_vacuum = INCREMENTAL");
+  if (number("PRAGMA page_count") == 0) return;
+  try {
+    execute("VACUUM");
+  } catch (const StorageError&) {
+    // The disk is too full for a copy. The database works as before, and compact() does nothing.
+  }
+}
+
+bool Database::compact() {
+  const std::int64_t before = number("PRAGMA freelist_count");
+  if (before == 0) return false;
+  execute("PRAGMA incremental_vacuum(200)");  // less than a megabyte, because others wait
+  const std::int64_t left = number("PRAGMA freelist_count");
+  return left > 0 && left < before;
+}
+
 std::size_t Database::move_log(bool wait) {
   const int mode = wait ? SQLITE_CHECKPOINT_RESTART : SQLITE_CHECKPOINT_PASSIVE;
   const int code = sqlite3_wal_checkpoint_v2(connection_.get(), nullptr, mode, nullptr, nullptr);

@@ -46,6 +46,13 @@ class Database {
   /// Uses a write-ahead log. Only move_log() copies the log into the database file. With
   /// Durability::power, the end of each transaction synchronises the log with the disk.
   void use_log(Durability durability);
+  /// Uses a rollback journal: a transaction writes its pages once, which suits large rows. Each
+  /// transaction is synchronised with the disk at its end.
+  void use_rollback();
+  /// Enables compact(). Rewrites the file of an older version once.
+  void enable_compaction();
+  /// Returns some of the free space to the system. Returns whether the next call can return more.
+  bool compact();
   /// Runs an SQLite checkpoint: copies log pages into the database file, except pages that a reader
   /// still needs. Synchronises both files, so that all earlier transactions survive a power
   /// failure. If `wait` is true, blocks writers and restarts the log from its beginning. Returns

@@ -1,7 +1,5 @@
 #include "server/storage/sqlite/main_database.h"
 
-#include "server/storage/sqlite/schema.h"
-
 namespace vat {
 namespace {
 
@@ -62,6 +60,10 @@ CREATE INDEX scenes_by_address ON scenes (address, bytes);
 }  // namespace
 
 MainDatabase::MainDatabase(const std::string& path, Durability durability)
-    : database(open_database(path, {kMainApplication, kMainSteps}, durability)) {}
+    : database(open_database(path, main_schema(), durability)) {}
+
+Schema main_schema() {
+  return {kMainApplication, kMainSteps};
+}
 
 }  // namespace vat

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "server/storage/sqlite/database.h"
+#include "server/storage/sqlite/schema.h"
 
 namespace vat {
 
@@ -20,5 +21,8 @@ struct MainDatabase {
   std::recursive_mutex mutex;
   Database database;
 };
+
+/// Returns the schema of the database.
+Schema main_schema();
 
 }  // namespace vat

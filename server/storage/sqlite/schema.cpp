@@ -14,8 +14,23 @@ void check_health(Database& database) {
   throw StorageError(StorageError::Kind::corrupt, database.path() + " is damaged: " + verdict);
 }
 
-/// Refuses files that this program must not change.
-void inspect(const std::string& path, const Schema& schema) {
+void run_steps(Database& database, const Schema& schema, std::size_t from, std::size_t to) {
+  for (const char* const step : schema.steps.subspan(from, to - from)) database.execute(step);
+  database.execute(("PRAGMA user_version = " + std::to_string(to)).c_str());
+  database.execute(("PRAGMA application_id = " + std::to_string(schema.application)).c_str());
+}
+
+void migrate(Database& database, const Schema& schema) {
+  const auto version = static_cast<std::size_t>(database.number("PRAGMA user_version"));
+  if (version >= schema.steps.size()) return;
+  Transaction transaction(database);
+  run_steps(database, schema, version, schema.steps.size());
+  transaction.commit();
+}
+
+}  // namespace
+
+void inspect_database(const std::string& path, const Schema& schema) {
   Database database(path, Database::Mode::read);
   const std::int64_t version = database.number("PRAGMA user_version");
   const std::int64_t application = database.number("PRAGMA application_id");
@@ -33,23 +48,26 @@ void inspect(const std::string& path, const Schema& schema) {
   check_health(database);
 }
 
-void migrate(Database& database, const Schema& schema) {
-  const auto version = static_cast<std::size_t>(database.number("PRAGMA user_version"));
-  if (version >= schema.steps.size()) return;
-  Transaction transaction(database);
-  for (const char* const step : schema.steps.subspan(version)) database.execute(step);
-  database.execute(("PRAGMA user_version = " + std::to_string(schema.steps.size())).c_str());
-  database.execute(("PRAGMA application_id = " + std::to_string(schema.application)).c_str());
-  transaction.commit();
+void create_schema(Database& database, const Schema& schema, std::int64_t version) {
+  if (version < 1 || version > static_cast<std::int64_t>(schema.steps.size())) {
+    throw StorageError(StorageError::Kind::newer, database.path() + ": the version " +
+                                                      std::to_string(version) +
+                                                      " of the copied data is unknown");
+  }
+  run_steps(database, schema, 0, static_cast<std::size_t>(version));
 }
 
-}  // namespace
-
-Database open_database(const std::string& path, const Schema& schema, Durability durability) {
+Database open_database(const std::string& path, const Schema& schema, Durability durability,
+                       Journaling journaling) {
   std::error_code missing;
-  if (std::filesystem::file_size(path, missing) > 0 && !missing) inspect(path, schema);
+  if (std::filesystem::file_size(path, missing) > 0 && !missing) inspect_database(path, schema);
   Database database(path, Database::Mode::create);
-  database.use_log(durability);
+  database.enable_compaction();
+  if (journaling == Journaling::write_ahead) {
+    database.use_log(durability);
+  } else {
+    database.use_rollback();
+  }
   migrate(database, schema);
   return database;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "server/storage/sqlite/compression.h"
 #include "server/storage/storage.h"
 #include "tests/server/fixture/session_fixture.h"
+#include "tests/server/fixture/test_disk.h"
 #include "tests/support/manual_clock.h"
 #include "tests/support/temporary_folder.h"
 
@@ -182,6 +184,44 @@ TEST(StorageCompression, GivesBackTheBytesAndRefusesWhatIsDamagedOrTooLarge) {
   EXPECT_TRUE(decompress(compress({}), 0).empty());
 }
 
+TEST_F(StorageCheckpoints, OfAllSessionsAreThinnedWhereTheyAreLargest) {
+  CheckpointStore store(path, 1 << 20, 30'000);
+  store.write(checkpoint(1, 10, 5000));
+  store.write(checkpoint(1, 20, 5000));
+  for (std::uint64_t position = 10; position <= 40; position += 10) {
+    store.write(checkpoint(2, position, 5000));
+  }
+  EXPECT_EQ(positions(store, 1), (std::vector<std::uint64_t>{10, 20}));
+  EXPECT_EQ(positions(store, 2), (std::vector<std::uint64_t>{10, 30, 40}));
+  CheckpointStore(path, 1 << 20, 100).write(checkpoint(3, 1, 5000));
+  EXPECT_EQ(positions(store, 1), std::vector<std::uint64_t>{20});
+  EXPECT_EQ(positions(store, 2), std::vector<std::uint64_t>{40}) << "the newest stays";
+  EXPECT_EQ(positions(store, 3), std::vector<std::uint64_t>{1});
+}
+
+TEST_F(StorageCheckpoints, OfClosedSessionsReturnTheirSpaceToTheSystem) {
+  CheckpointStore store(path, 64 << 20);
+  store.write(checkpoint(1, 10, 5000));
+  const auto small = std::filesystem::file_size(path);
+  for (std::uint64_t position = 1; position <= 20; ++position) {
+    store.write(checkpoint(2, position, 200'000));
+  }
+  EXPECT_GT(std::filesystem::file_size(path), small + 4'000'000);
+  store.keep_only({1});
+  EXPECT_LE(std::filesystem::file_size(path), small + 8192);
+  EXPECT_EQ(positions(store, 1), std::vector<std::uint64_t>{10});
+}
+
+// A checkpoint of 200 kB is written once, not also to a write-ahead log.
+TEST_F(StorageCheckpoints, AreWrittenOnce) {
+  TestDisk disk;
+  CheckpointStore store(path, 64 << 20);
+  store.write(checkpoint(1, 10, 200'000));
+  const std::size_t before = disk.written_bytes();
+  store.write(checkpoint(1, 20, 200'000));
+  EXPECT_LT(disk.written_bytes() - before, 260'000U);
+}
+
 struct Course {
   double share = 0;  ///< fraction of checkpoints in all work
   Seconds longest{0};
@@ -275,6 +315,26 @@ class BoundedLog : public testing::Test {
   const Simulation simulation;
   std::uint64_t number = 0;
 };
+
+// The budget of a minute is 10.8 MB by default. The clock stands still.
+TEST_F(BoundedLog, CheckpointsStayWithinTheirBytesPerSecond) {
+  SessionLog log(storage, number, {1, 0});
+  const auto is_due = [&] {
+    log.add_work(Seconds(5));
+    return log.is_due(5, 1, clock.now());
+  };
+  EXPECT_TRUE(is_due());
+  storage.count_checkpoint(Seconds(0), 10'800'000);
+  EXPECT_TRUE(is_due()) << "the budget is used, and not exceeded";
+  storage.count_checkpoint(Seconds(0), 1'000'000);
+  keep(log, 1);
+  EXPECT_FALSE(is_due());
+  clock.advance(std::chrono::milliseconds(990));  // progress is due after a second
+  EXPECT_FALSE(is_due());
+  clock.advance(std::chrono::seconds(5));
+  keep(log, 1);
+  EXPECT_TRUE(is_due());
+}
 
 TEST_F(BoundedLog, UpToItsLimitNothingIsForgotten) {
   SessionLog log(storage, number, {1, 0});
