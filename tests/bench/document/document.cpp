@@ -103,6 +103,12 @@ Status copy_picture(const fs::path& results, const fs::path& target) {
 
 }  // namespace
 
+std::vector<std::string> document_markers() {
+  std::vector<std::string> markers;
+  for (const Content& content : kContents) markers.emplace_back(content.marker);
+  return markers;
+}
+
 Status write_document(const fs::path& results, const fs::path& page) {
   const Result<std::string> text = read_text(page);
   if (!text) return text.errors();
