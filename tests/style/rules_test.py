@@ -229,12 +229,18 @@ class DocumentRules(RuleTest):
     def test_known_faults(self):
         rule = fault_rules.known_faults
         fault = {"name": "f", "file": "core/a.cpp", "before": "a + b", "detected_by": ["unit/A.B"]}
-        files = {"core/a.cpp": "return a + b;\n", "tests/faults/core.json": json.dumps([fault])}
+        web = fault | {"detected_by": ["web/test: tests/web/a.test.ts > adds"]}
+        files = {"core/a.cpp": "return a + b;\n", "tests/faults/core.json": json.dumps([fault]),
+                 "tests/core/a_test.cpp": "TEST(A, B) {}\n"}
         self.accepts(rule, files)
+        self.accepts(rule, files | {"tests/web/a.test.ts": "",
+                                    "tests/faults/core.json": json.dumps([web])})
         self.refuses(rule, files | {"core/a.cpp": "return a - b;\n"}, "f: its text occurs 0 times")
         self.refuses(rule, files | {"core/a.cpp": "a + b + a + b"}, "f: its text occurs 2 times")
         undetected = json.dumps([fault | {"detected_by": []}])
         self.refuses(rule, files | {"tests/faults/core.json": undetected}, "f: no test detects it")
+        self.refuses(rule, files | {"tests/core/a_test.cpp": "TEST(A, C) {}"}, "no test unit/A.B")
+        self.refuses(rule, files | {"tests/faults/core.json": json.dumps([web])}, "no test web/test")
 
 
 class Coverage(unittest.TestCase):
