@@ -10,7 +10,9 @@
 namespace vat {
 namespace {
 
-constexpr Real kTolerance = 1e-2;  // of the change of velocities, in the norm of M
+// The tolerances of the error of w, in the norm of M.
+constexpr Real kTolerance = 1e-2;          // relative to w
+constexpr Real kVelocityTolerance = 3e-4;  // relative to the velocities minus their mean
 constexpr int kMaxDampingPasses = 200;
 
 /// The constants of the solve.
@@ -179,11 +181,31 @@ void turn_direction(const Equation& eq, Real share) {
   }
 }
 
+/// Returns the square of the error of w that the velocities permit. Their mean does not count, so
+/// that the result does not depend on the frame of reference.
+Real permitted_error(const Equation& eq) {
+  const Model& model = eq.model();
+  const Configuration& at = eq.context.configuration;
+  const auto add = [](MomentSums& sums, Real mass, const Vec3& velocity) {
+    sums += {mass, mass * velocity, mass * velocity.squaredNorm()};
+  };
+  MomentSums total =
+      sum_over_particles(eq, eq.scratch.moments, [&](std::size_t i, MomentSums& sums) {
+        if (model.inverse_mass[i] > 0) add(sums, model.mass[i], at.velocity[i]);
+      });
+  for (std::size_t b = 0; b < eq.scratch.bodies.size(); ++b) {
+    const DampedBody& body = eq.scratch.bodies[b];
+    if (body.inverse_mass > 0) add(total, body.mass, at.rigid[b].momentum * body.inverse_mass);
+  }
+  return kVelocityTolerance * kVelocityTolerance * total.spread();
+}
+
 /// Conjugate gradients from w = 0, preconditioned with M. Returns the number of products.
 int iterate(const Equation& eq, Real error) {
+  const Real permitted = permitted_error(eq);
   Real size = 0;
   for (int iteration = 0; iteration < kMaxDampingPasses; ++iteration) {
-    if (!(error > kTolerance * kTolerance * size)) return iteration;
+    if (!(error > std::max(kTolerance * kTolerance * size, permitted))) return iteration;
     apply_damping(eq, eq.scratch.direction, eq.scratch.product);
     const Real curvature = curvature_along(eq);
     if (!(curvature > 0)) return iteration + 1;  // too small for the precision of numbers
