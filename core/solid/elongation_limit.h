@@ -43,6 +43,6 @@ struct ElongationScratch {
 int limit_elongation(const Model& model, TaskRunner* runner, Configuration& configuration, Real dt,
                      ElongationScratch& scratch);
 inline constexpr int kElongationSweeps = 100;
-inline constexpr Real kElongationTolerance = 1e-4;
+inline constexpr Real kElongationTolerance = 3e-4;
 
 }  // namespace vat
