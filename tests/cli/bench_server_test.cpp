@@ -91,6 +91,21 @@ TEST(BenchSeeks, SaysWhatTheServerRefuses) {
   EXPECT_THAT(result.err, testing::HasSubstr("gone"));
 }
 
+TEST(BenchDurability, MeasuresEachDurability) {
+  const TemporaryFolder folder;
+  const ProgramResult result = run_bench(
+      {"durability", "--sessions", "2", "--seconds", "1", "--output", folder.path().string()});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Table table = read_csv((folder.path() / "durability.csv").string());
+  ASSERT_EQ(table.rows.size(), 3U);
+  for (std::size_t row = 0; row < 3; ++row) {
+    EXPECT_EQ(table.number(row, "commands"), 40);
+    EXPECT_GT(table.number(row, "median reply [ms]"), 0);
+    EXPECT_LE(table.number(row, "median reply [ms]"), table.number(row, "99 % reply [ms]"));
+    EXPECT_LE(table.number(row, "median lateness [ms]"), table.number(row, "99 % lateness [ms]"));
+  }
+}
+
 // The growth of a line is exact. For other values it is a least-squares fit: at the positions -1.5,
 // -0.5, 0.5 and 1.5 it is (6 * -0.5 + 6 * 1.5) / 5 per step.
 TEST(BenchSoak, FindsTheGrowthOfALine) {
