@@ -9,6 +9,7 @@
 #include "server/cli/common/command.h"
 #include "server/support/task_runner.h"
 #include "tests/bench/accuracy/accuracy_report.h"
+#include "tests/bench/accuracy/catalogue_report.h"
 #include "tests/bench/accuracy/control_report.h"
 #include "tests/bench/accuracy/growth_report.h"
 #include "tests/bench/accuracy/law_report.h"
@@ -63,14 +64,26 @@ Status growth(const Options& options, TaskRunner* /*runner*/) {
   return write_growth(results, options.output);
 }
 
+Status catalogue(const Options& options, TaskRunner* runner) {
+  std::cout << "catalogue: error and time of every scene with its own numerics" << std::endl;
+  const auto results = measure_catalogue(
+      options.quick ? CatalogueSettings{.late = 0.4, .refined = 2, .timed = 0.1, .repetitions = 1}
+                    : CatalogueSettings{},
+      runner);
+  std::cout << to_markdown(catalogue_table(results)) << std::endl;
+  return write_catalogue(results, options.output);
+}
+
 /// A comparison that is not a sweep of integrators and steps.
 struct Comparison {
   const char* name;
   Status (*run)(const Options& options, TaskRunner* runner);
 };
 
-constexpr Comparison kComparisons[] = {
-    {"solvers", &solvers}, {"tolerances", &tolerances}, {"growth", &growth}};
+constexpr Comparison kComparisons[] = {{"solvers", &solvers},
+                                       {"tolerances", &tolerances},
+                                       {"growth", &growth},
+                                       {"catalogue", &catalogue}};
 
 int accuracy(const Options& options) {
   const std::vector<ProblemEntry>& problems = all_problems();

@@ -1,7 +1,3 @@
-#include <cmath>
-#include <stdexcept>
-
-#include "protocol/scene/scene_json.h"
 #include "tests/bench/accuracy/problem.h"
 
 namespace vat::bench {
@@ -9,26 +5,6 @@ namespace vat::bench {
 using validation::Run;
 
 namespace {
-
-std::vector<Vec3> centers_of(const Run& run) {
-  std::vector<Vec3> centers;
-  for (const BodyDiagnostics& body : run.diagnostics().bodies) {
-    centers.push_back(body.center_of_mass);
-  }
-  return centers;
-}
-
-Real distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-  Real sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]).squaredNorm();
-  return std::sqrt(sum);
-}
-
-Scene load_catalogue(const std::string& name) {
-  Result<Scene> scene = read_scene_file(VAT_DEFAULT_SCENES_DIR "/" + name + ".json");
-  if (!scene) throw std::runtime_error(name + " is not a scene of the catalogue");
-  return std::move(scene).value();
-}
 
 /// A catalogue scene until after its first impacts. Later the particle paths diverge with every
 /// method.

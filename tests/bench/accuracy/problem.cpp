@@ -2,6 +2,10 @@
 
 #include <cmath>
 #include <iterator>
+#include <stdexcept>
+
+#include "core/support/check.h"
+#include "protocol/scene/scene_json.h"
 
 namespace vat::bench {
 
@@ -19,9 +23,7 @@ std::vector<Vec3> all_positions(const Run& run) {
 
 /// Returns the root mean square distance between two lists of the same particles.
 Real root_mean_square(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
-  Real sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]).squaredNorm();
-  return std::sqrt(sum / static_cast<Real>(a.size()));
+  return distance(a, b) / std::sqrt(static_cast<Real>(a.size()));
 }
 
 std::vector<ProblemEntry> collect() {
@@ -38,6 +40,27 @@ std::vector<ProblemEntry> collect() {
 const std::vector<ProblemEntry>& all_problems() {
   static const std::vector<ProblemEntry> problems = collect();
   return problems;
+}
+
+Scene load_catalogue(const std::string& name) {
+  Result<Scene> scene = read_scene_file(VAT_DEFAULT_SCENES_DIR "/" + name + ".json");
+  if (!scene) throw std::runtime_error(name + " is not a scene of the catalogue");
+  return std::move(scene).value();
+}
+
+std::vector<Vec3> centers_of(const Run& run) {
+  std::vector<Vec3> centers;
+  for (const BodyDiagnostics& body : run.diagnostics().bodies) {
+    centers.push_back(body.center_of_mass);
+  }
+  return centers;
+}
+
+Real distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  VAT_CHECK(a.size() == b.size());
+  Real sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]).squaredNorm();
+  return std::sqrt(sum);
 }
 
 std::vector<std::uint32_t> doubled(std::uint32_t first, int count) {

@@ -40,6 +40,15 @@ std::vector<ProblemEntry> liquid_problems();
 std::vector<ProblemEntry> interaction_problems();
 std::vector<ProblemEntry> catalogue_problems();
 
+/// Reads a scene of the catalogue. Throws std::runtime_error if there is none with this name.
+Scene load_catalogue(const std::string& name);
+
+/// Returns the centres of mass of all bodies.
+std::vector<Vec3> centers_of(const validation::Run& run);
+
+/// Returns the root of the sum of squared distances. Both lists must have the same length.
+Real distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b);
+
 /// Returns `count` numbers, starting with `first`, each twice the previous one.
 std::vector<std::uint32_t> doubled(std::uint32_t first, int count);
 

@@ -64,6 +64,7 @@ constexpr Content kContents[] = {
     {"solvers", "accuracy", "solvers", solvers_table},
     {"tolerances", "accuracy", "tolerances", tolerances_table},
     {"growth", "accuracy", "growth", growth_rows_table},
+    {"catalogue", "accuracy", "catalogue", catalogue_rows_table},
     {"laws", "accuracy", "laws", laws_table},
     {"steps", "accuracy", "control", steps_table},
     {"counts", "stability", "stability", counts_table},

@@ -177,6 +177,19 @@ Table growth_rows_table(const Json& growth) {
   return table;
 }
 
+Table catalogue_rows_table(const Json& catalogue) {
+  Table table{{"scene", "pressure solver", "particles", "step [ms]", "error at 0.3 s",
+               "error at 1 s", "times real time"},
+              {}};
+  for (const Json& row : catalogue) {
+    table.rows.push_back({cell_text(row, "scene"), cell_text(row, "pressure solver"),
+                          row.at("particles").get<std::uint64_t>(), row.at("step [ms]").get<Real>(),
+                          row.at("error at 0.3 s").get<Real>(), row.at("error later").get<Real>(),
+                          row.at("times real time").get<Real>()});
+  }
+  return table;
+}
+
 Table counts_table(const Json& stability) {
   Table table{{"part", "scenes", "not finite", "aborts", "outside", "guard events", "retries",
                "wall stops", "stopped", "refused", "faults"},

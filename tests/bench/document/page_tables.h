@@ -33,6 +33,8 @@ Table solvers_table(const Json& solvers);
 Table tolerances_table(const Json& tolerances);
 /// Iterations of the solves of a step against the size of the problem.
 Table growth_rows_table(const Json& growth);
+/// Error and time of the scenes of the catalogue.
+Table catalogue_rows_table(const Json& catalogue);
 
 /// Returns all columns except the seconds.
 Table counts_table(const Json& stability);
