@@ -68,7 +68,8 @@ constexpr Content kContents[] = {
     {"laws", "accuracy", "laws", laws_table},
     {"steps", "accuracy", "control", steps_table},
     {"counts", "stability", "stability", counts_table},
-    {"race", "race", "race", race_table}};
+    {"race", "race", "race", race_table},
+    {"durability", "durability", "durability", durability_table}};
 
 /// Returns the contents of the markers that the page has.
 Result<std::map<std::string, std::string>> make_contents(const std::string& page,
@@ -127,10 +128,12 @@ Status write_document(const fs::path& results, const fs::path& page) {
 void add_document_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("document",
                                          "Fill tables and pictures of core/ACCURACY.md and "
-                                         "README.md from the other commands' results");
+                                         "README.md and server/RELIABILITY.md from the other "
+                                         "commands' results");
   const auto results = std::make_shared<std::string>(VAT_SOURCE_DIR "/build/bench");
   const auto pages = std::make_shared<std::vector<std::string>>(
-      std::vector<std::string>{VAT_SOURCE_DIR "/core/ACCURACY.md", VAT_SOURCE_DIR "/README.md"});
+      std::vector<std::string>{VAT_SOURCE_DIR "/core/ACCURACY.md", VAT_SOURCE_DIR "/README.md",
+                               VAT_SOURCE_DIR "/server/RELIABILITY.md"});
   command->add_option("--results", *results, "Folder of the results")->capture_default_str();
   command->add_option("--page", *pages, "A page; may be given again")->take_all()->expected(1);
   command->footer(

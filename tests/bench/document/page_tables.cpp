@@ -47,6 +47,11 @@ std::string method_cell(const Json& row) {
   return method + ": " + cell_number(row, "evaluations per particle");
 }
 
+std::string machine_cell(const Json& row) {
+  return cell_text(row, "cpu") + ", " + std::to_string(row.at("cores").get<std::uint64_t>()) +
+         " cores";
+}
+
 std::string law_cell(const Json& row) {
   if (row.at("seconds").is_null()) return "–";
   char milliseconds[32];
@@ -213,9 +218,22 @@ Table race_table(const Json& race) {
                           row.at("threads").get<std::uint64_t>(), cell_number(row, "vat [s/s]"),
                           cell_number(row, "SPlisHSPlasH [s/s]"),
                           cell_number(row, "SPlisHSPlasH / vat"),
-                          cell_number(row, "density error of vat [%]") + " %",
-                          cell_text(row, "cpu") + ", " +
-                              std::to_string(row.at("cores").get<std::uint64_t>()) + " cores"});
+                          cell_number(row, "density error of vat [%]") + " %", machine_cell(row)});
+  }
+  return table;
+}
+
+Table durability_table(const Json& durability) {
+  constexpr const char* kTimes[] = {"median reply [ms]", "99 % reply [ms]", "median lateness [ms]",
+                                    "99 % lateness [ms]"};
+  Table table{{"sessions", "durability"}, {}};
+  table.columns.insert(table.columns.end(), std::begin(kTimes), std::end(kTimes));
+  table.columns.emplace_back("machine");
+  for (const Json& row : durability) {
+    std::vector<Cell> cells{row.at("sessions").get<std::uint64_t>(), cell_text(row, "durability")};
+    for (const char* column : kTimes) cells.emplace_back(cell_number(row, column));
+    cells.emplace_back(machine_cell(row));
+    table.rows.push_back(std::move(cells));
   }
   return table;
 }
