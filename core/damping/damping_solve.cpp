@@ -221,8 +221,9 @@ Oscillation greater(const Oscillation& a, const Oscillation& b) {
   return {std::max(a.omega2, b.omega2), std::max(a.rate, b.rate)};
 }
 
-/// The bound of the own forces of bodies with free particles.
-Oscillation bound_bodies(const Model& model) {
+}  // namespace
+
+Oscillation find_bound_of_bodies(const Model& model) {
   Oscillation bound;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const ModelBody& body = model.bodies[b];
@@ -236,14 +237,12 @@ Oscillation bound_bodies(const Model& model) {
   return bound;
 }
 
-}  // namespace
-
 Oscillation find_bound(const ForceModel& f, const Configuration& at) {
   ContactForceScratch& contact_buffers = f.work.of<ContactForceScratch>();
   const Model& model = f.model;
   VAT_CHECK(f.model.damping.own.size() == f.model.bodies.size());
   const std::vector<ContactLoad>& loads = contact_buffers.contact_loads;
-  Oscillation bound = bound_bodies(model);
+  Oscillation bound = find_bound_of_bodies(model);
   if (loads.empty()) return bound;
   const auto take = [&](const Oscillation& o) { bound = greater(bound, o); };
   std::vector<Oscillation>& by_block = contact_buffers.load_bounds;

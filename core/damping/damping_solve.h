@@ -71,6 +71,9 @@ struct DampingScratch {
 /// of its contacts are added. The result is the maximum of these sums.
 Oscillation find_bound(const ForceModel& force_model, const Configuration& at);
 
+/// Returns the bound of find_bound() without contacts, of bodies with free particles.
+Oscillation find_bound_of_bodies(const Model& model);
+
 /// Returns whether velocity Verlet must solve for the damping in a step of `dt` [s]. A solve is not
 /// needed if (omega dt)^2 + 4 rate dt <= 4, because forces at predicted velocities are then stable.
 bool must_solve_damping(const Oscillation& bound, Real dt);

@@ -1,6 +1,7 @@
 // The advance of a simulation: its steps, and the changes of bodies in between.
 
 #include <algorithm>
+#include <utility>
 
 #include "core/simulation/simulation.h"
 #include "core/simulation/simulation_impl.h"
@@ -107,11 +108,53 @@ void SimulationImpl::undo_call() noexcept {
   }
 }
 
+void SimulationImpl::read_from_device() {
+  if (unread_steps == 0) return;
+  const auto steps = static_cast<std::uint32_t>(std::exchange(unread_steps, 0));
+  const Status read = engine->read(state);
+  if (read) return;
+  engine_error = read.errors().front();
+  engine.reset();
+  state.step_count -= steps;
+  AdvanceReport repeated;
+  if (!take_guarded_steps(steps, repeated)) engine_error->message += "; the last steps are lost";
+}
+
+bool SimulationImpl::advance_on_device(std::uint32_t steps, AdvanceReport& report) {
+  if (engine == nullptr || steps == 0) return false;
+  enter("device");
+  Status prepared;
+  if (engine_model != model) {
+    prepared = engine->bind(model);
+    engine_model = prepared ? model : nullptr;
+    device_is_current = false;
+  }
+  const Result<bool> taken =
+      prepared ? engine->advance({controls, state, report, device_is_current}, steps)
+               : prepared.errors();
+  if (taken && taken.value()) {
+    device_is_current = true;
+    state.step_count += steps;
+    unread_steps += steps;
+    report.device_steps += steps;
+    return true;
+  }
+  read_from_device();
+  device_is_current = false;
+  if (!taken) {
+    report.device_error = taken.errors().front();
+    engine.reset();
+  }
+  return false;
+}
+
 AdvanceReport Simulation::advance(std::uint32_t steps) {
-  SimulationImpl& impl = *impl_;
+  SimulationImpl& impl = impl_.unread();
   VAT_CHECK(impl.model != nullptr);
   AdvanceReport report;
   const ObservedCall call(impl.observer);
+  if (impl.advance_on_device(steps, report)) return report;
+  if (impl.engine_error) report.device_error = std::exchange(impl.engine_error, std::nullopt);
   impl.enter("keep_state");
   impl.begin_call();
   try {

@@ -106,7 +106,27 @@ class HostInterface {
   HostInterface& operator=(HostInterface&&) noexcept;
   ~HostInterface();
 
-  std::unique_ptr<SimulationImpl> impl_;
+  /// The data of a simulation. Access by -> or * first reads the state from the device, if it is
+  /// there. After access that may change the state, the device starts from the changed state.
+  class Data {
+   public:
+    Data();
+    Data(Data&&) noexcept;
+    Data& operator=(Data&&) noexcept;
+    ~Data();
+
+    SimulationImpl* operator->() const;
+    SimulationImpl* operator->();
+    SimulationImpl& operator*() const { return *operator->(); }
+    SimulationImpl& operator*() { return *operator->(); }
+    /// Returns the data without reading the state from the device.
+    SimulationImpl& unread() const { return *impl_; }
+
+   private:
+    std::unique_ptr<SimulationImpl> impl_;
+  };
+
+  Data impl_;
 };
 
 }  // namespace vat

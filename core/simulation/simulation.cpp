@@ -33,7 +33,22 @@ void SimulationImpl::pose_rigid_particles() {
   }
 }
 
-HostInterface::HostInterface() : impl_(std::make_unique<SimulationImpl>()) {}
+HostInterface::Data::Data() : impl_(std::make_unique<SimulationImpl>()) {}
+HostInterface::Data::Data(Data&&) noexcept = default;
+HostInterface::Data& HostInterface::Data::operator=(Data&&) noexcept = default;
+HostInterface::Data::~Data() = default;
+
+SimulationImpl* HostInterface::Data::operator->() const {
+  impl_->read_from_device();
+  return impl_.get();
+}
+SimulationImpl* HostInterface::Data::operator->() {
+  impl_->read_from_device();
+  impl_->device_is_current = false;
+  return impl_.get();
+}
+
+HostInterface::HostInterface() = default;
 HostInterface::HostInterface(HostInterface&&) noexcept = default;
 HostInterface& HostInterface::operator=(HostInterface&&) noexcept = default;
 HostInterface::~HostInterface() = default;
@@ -82,19 +97,30 @@ void SimulationImpl::adopt(SimulationContent content, GuardBounds content_bounds
 }
 
 InstructionSet Simulation::instruction_set() const {
-  return impl_->work.instructions;
+  return impl_.unread().work.instructions;
+}
+Status Simulation::set_engine(std::unique_ptr<StepEngine> engine) {
+  VAT_CHECK(engine != nullptr);
+  if (Status bound = engine->bind(impl_->model); !bound) return bound;
+  impl_->engine = std::move(engine);
+  impl_->engine_model = impl_->model;
+  return {};
+}
+std::string_view Simulation::arithmetic() const {
+  const SimulationImpl& impl = impl_.unread();
+  return impl.engine ? impl.engine->arithmetic() : to_string(impl.work.instructions);
 }
 Real Simulation::time() const {
-  return impl_->time();
+  return impl_.unread().time();
 }
 Real Simulation::step_size() const {
-  return impl_->step_size();
+  return impl_.unread().step_size();
 }
 std::uint32_t Simulation::steps_per_tick() const {
-  return impl_->steps_per_tick();
+  return impl_.unread().steps_per_tick();
 }
 std::size_t Simulation::particle_count() const {
-  return impl_->all().particle_count;
+  return impl_.unread().all().particle_count;
 }
 std::size_t Simulation::greatest_particle_count() const {
   std::size_t count = 0;
@@ -113,7 +139,7 @@ std::size_t Simulation::sleeping_body_count() const {
   return islands.size() - static_cast<std::size_t>(std::ranges::count(islands, kAwake));
 }
 const Scene& Simulation::scene() const {
-  return impl_->all().scene;
+  return impl_.unread().all().scene;
 }
 
 BodyView SimulationImpl::view_of(const ModelBody& body) const {

@@ -22,6 +22,8 @@
 
 namespace vat {
 
+class StepEngine;
+
 /// Particle simulation of one scene. It is not thread-safe: two threads must not use it at the same
 /// time. With the same scene, commands and instruction set, results are bitwise equal with every
 /// TaskRunner. HostInterface provides the commands that change a running scene.
@@ -56,6 +58,14 @@ class Simulation : public HostInterface {
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
   ~Simulation();
+
+  /// Takes the following steps by `engine`, if it has the features of the scene; see
+  /// StepEngine::bind(). Otherwise fails, and changes nothing. If an engine fails later, or a
+  /// command adds a feature that it lacks, the simulation continues without it; see
+  /// AdvanceReport::device_error. Copies of the simulation have no engine.
+  Status set_engine(std::unique_ptr<StepEngine> engine);
+  /// Returns a name of the arithmetic of the steps: that of the engine, or the instruction set.
+  std::string_view arithmetic() const;
 
   /// Advances the simulation by `steps` steps of step_size(). The StepControl of the scene may
   /// divide each step. After each part, the state is checked; see GuardEvent. After a failure or an

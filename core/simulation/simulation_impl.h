@@ -9,6 +9,7 @@
 #include "core/simulation/simulation.h"
 #include "core/sleep/sleepers.h"
 #include "core/state/controls.h"
+#include "core/stepping/step_engine.h"
 #include "core/stepping/stepper.h"
 #include "core/stepping/workspace.h"
 #include "core/validation/validate.h"
@@ -58,8 +59,14 @@ struct SimulationImpl : SimulationContent {
   StepBounds step_bounds;  ///< bounds of the model
   Workspace work;
   Stepper stepper;
-  CallStart call_start;        ///< start of the current advance()
-  mutable Workspace measured;  ///< buffers of read-only queries
+  std::unique_ptr<StepEngine> engine;         ///< null: all steps are taken by `stepper`
+  std::shared_ptr<const Model> engine_model;  ///< model for which the engine is prepared
+  bool device_is_current = false;  ///< the engine has the state, which has not changed since
+  /// Steps that the engine has taken since the other members of `state` were read from it.
+  std::uint64_t unread_steps = 0;
+  std::optional<Error> engine_error;  ///< of a reading; the next report contains it
+  CallStart call_start;               ///< start of the current advance()
+  mutable Workspace measured;         ///< buffers of read-only queries
   /// Configuration of all bodies after a call, without contacts. Valid only if a body sleeps.
   Configuration shown;
   std::shared_ptr<const Sleepers> shown_sleepers;  ///< sleepers in `shown`
@@ -131,6 +138,12 @@ struct SimulationImpl : SimulationContent {
   void enter(std::string_view stage) const {
     if (observer != nullptr) observer->stage_begins(stage);
   }
+  /// Takes the steps of a call by the engine. Returns false, with an unchanged content, if it
+  /// cannot take them.
+  bool advance_on_device(std::uint32_t steps, AdvanceReport& report);
+  /// Reads the state of the last steps of the engine, if any. If the device has failed, the CPU
+  /// repeats these steps.
+  void read_from_device();
   void begin_call();
   void undo_call() noexcept;
   /// Performs the scheduled changes of bodies (melting and flow) of the next nominal step.

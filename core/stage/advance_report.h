@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/support/names.h"
+#include "core/support/result.h"
 #include "core/types.h"
 
 namespace vat {
@@ -56,7 +58,9 @@ struct AdvanceReport {
   /// makes the cost of local control and implicit springs comparable with that of full evaluations.
   std::uint64_t particle_evaluations = 0;
   IterationCounts iterations;
-  bool bodies_changed = false;             ///< true if a body has melted
+  std::uint64_t device_steps = 0;     ///< nominal steps that a device has taken; see StepEngine
+  std::optional<Error> device_error;  ///< the device has failed, and is no longer used
+  bool bodies_changed = false;        ///< true if a body has melted
   std::vector<std::uint64_t> ended_grabs;  ///< ids of grabs with removed or melted particles
   bool failed = false;                     ///< true: the state is that before the call
   std::vector<GuardEvent> events;          ///< in the order of their detection

@@ -60,6 +60,7 @@ INSTANTIATE_TEST_SUITE_P(
                     WrongUse{with_scene({"--threads", "1.5"}), "--threads"},
                     WrongUse{with_scene({"--threads", "-1"}), "--threads"},
                     WrongUse{with_scene({"--isa", "avx"}), "baseline, avx2, avx512"},
+                    WrongUse{with_scene({"--device", "gpu"}), "cpu, opencl, opencl:N"},
                     WrongUse{{"serve", "--isa", "sse9"}, "baseline, avx2, avx512"},
                     WrongUse{{"serve", "--endpoints", "0"}, "--endpoints"},
                     WrongUse{{"serve", "--port", "70000"}, "from 0 to 65535, not '70000'"},

@@ -21,6 +21,8 @@ FOLDER_ORDER = (
     "core/external", "core/liquid/incompressible", "core/damping",
     # the step, and the simulation
     "core/stepping", "core/sleep", "core/saved", "core/simulation",
+    # steps on other devices
+    "core/device/opencl", "core/device/tait", "core/device",
     "protocol/json", "protocol/scene", "protocol/frame",
     # files, sockets and measurements, without sessions
     "server/support", "server/output", "server/storage/sqlite", "server/storage", "server/access", "server/transport",

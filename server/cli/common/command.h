@@ -36,6 +36,8 @@ void add_serve_command(CLI::App& app, int& exit_code);
 void add_simulate_command(CLI::App& app, int& exit_code);
 /// Adds `vat validate`.
 void add_validate_command(CLI::App& app, int& exit_code);
+/// Adds `vat devices`.
+void add_devices_command(CLI::App& app, int& exit_code);
 /// Adds `vat script`, which plays protocol scripts against a server.
 void add_script_command(CLI::App& app, int& exit_code);
 /// Adds `vat replay`.

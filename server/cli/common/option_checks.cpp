@@ -44,4 +44,16 @@ void add_isa_option(CLI::App& command, InstructionSet& instructions) {
       ->check(CLI::Validator(check, "SET"));
 }
 
+void add_device_option(CLI::App& command, DeviceChoice& device) {
+  const auto check = [](const std::string& text) {
+    const Result<DeviceChoice> choice = parse_device(text);
+    return choice ? std::string() : choice.errors().front().message;
+  };
+  const auto keep = [&device](const std::string& text) { device = parse_device(text).value(); };
+  command
+      .add_option_function<std::string>(
+          "--device", keep, "Device of the steps: " + std::string(kDeviceForm) + "; default: cpu")
+      ->check(CLI::Validator(check, "DEVICE"));
+}
+
 }  // namespace vat

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "core/device/device_choice.h"
 #include "core/support/instruction_set.h"
 
 namespace vat {
@@ -15,5 +16,8 @@ CLI::Validator csv_file_name();
 /// Adds the option `--isa`: an instruction set of this machine. The default is the best instruction
 /// set.
 void add_isa_option(CLI::App& command, InstructionSet& instructions);
+
+/// Adds the option `--device`: the device that takes the steps. The default is the CPU.
+void add_device_option(CLI::App& command, DeviceChoice& device);
 
 }  // namespace vat

@@ -85,6 +85,7 @@ struct SimulateOptions {
   std::optional<Real> accuracy;
   std::size_t threads = 1;
   InstructionSet instructions = best_instruction_set();
+  DeviceChoice device;
   std::string output;
   std::string diagnostics;
   bool plan = false;
@@ -163,12 +164,19 @@ Real real_time_factor(const Simulation& simulation, const RunTotals& totals) {
   return totals.stepping.count() > 0 ? simulation.time() / totals.stepping.count() : 0;
 }
 
+std::string arithmetic_text(const Simulation& simulation, const RunTotals& totals) {
+  const std::string set =
+      std::string("instruction set: ") + to_string(simulation.instruction_set());
+  if (totals.device_steps == 0) return set;
+  return "device: " + std::to_string(totals.device_steps) + " steps, " +
+         std::string(simulation.arithmetic()) + ", " + set;
+}
+
 void print_summary(const Simulation& simulation, const RunTotals& totals) {
   std::cerr << std::setprecision(6) << simulation.time() << " s simulated in " << totals.steps
             << " steps and " << std::setprecision(3) << totals.stepping.count()
-            << " s of wall time: " << real_time_factor(simulation, totals)
-            << " times real time, instruction set " << to_string(simulation.instruction_set())
-            << ", guard events: " << totals.guard_events;
+            << " s of wall time: " << real_time_factor(simulation, totals) << " times real time, "
+            << arithmetic_text(simulation, totals) << ", guard events: " << totals.guard_events;
   if (totals.wall_stops > 0) std::cerr << ", wall stops: " << totals.wall_stops;
   if (totals.unsolved_drifts > 0) {
     std::cerr << ", implicit springs not solved to the tolerance: " << totals.unsolved_drifts;
@@ -182,14 +190,14 @@ void print_speed(const StageClock& profile, const Simulation& simulation, const 
   std::cout << std::fixed << std::setprecision(4)
             << "ms per step: " << (totals.steps > 0 ? ms / static_cast<double>(totals.steps) : 0)
             << "\nreal-time factor: " << std::setprecision(3)
-            << real_time_factor(simulation, totals)
-            << "\ninstruction set: " << to_string(simulation.instruction_set()) << '\n';
+            << real_time_factor(simulation, totals) << '\n'
+            << arithmetic_text(simulation, totals) << '\n';
 }
 
 void print_hash(const Simulation& simulation) {
   std::string line = "hash ";
   append_hash(line, simulation.state_hash());
-  std::cout << line << ' ' << to_string(simulation.instruction_set()) << '\n';
+  std::cout << line << ' ' << simulation.arithmetic() << '\n';
 }
 
 Result<Scene> load_scene_for(const SimulateOptions& options, Schedule& schedule) {
@@ -223,6 +231,12 @@ int simulate(const SimulateOptions& options) {
   Result<Simulation> created = Simulation::create(scene.value(), &runner, options.instructions);
   if (!created) return fail(options.scene, created.errors());
   Simulation& simulation = created.value();
+  Result<std::unique_ptr<StepEngine>> engine = make_engine(options.device);
+  if (!engine) return fail(options.scene, engine.errors());
+  if (engine.value()) {
+    const Status set = simulation.set_engine(std::move(engine).value());
+    if (!set) return fail(options.scene, set.errors());
+  }
   if (options.plan) std::cout << simulation.plan_text();
   if (options.only_plan()) return kExitOk;
   print_warnings(options.scene, scene.value());  // of the step and integrator in use
@@ -276,6 +290,7 @@ void add_simulate_options(CLI::App& command, SimulateOptions& options) {
       ->check(CLI::Range(std::size_t{1}, kMaxThreads))
       ->capture_default_str();
   add_isa_option(command, options.instructions);
+  add_device_option(command, options.device);
   command
       .add_option("--output", options.output, "File for the particles: .csv, .vtk, .ply or .npy")
       ->check(CLI::Validator(check_frame_file_name, "FILE"));

@@ -20,6 +20,11 @@ Status take_steps(Simulation& simulation, std::uint32_t count, const RunHooks& h
   totals.guard_events += report.undone_steps;
   totals.wall_stops += report.wall_stops;
   totals.unsolved_drifts += report.unsolved_drifts;
+  totals.device_steps += report.device_steps;
+  if (report.device_error) {
+    hooks.notice(report.device_error->path + ": " + report.device_error->message +
+                 "; the run continues on the CPU");
+  }
   if (report.failed) return describe(report.events.back(), simulation);
   if (first_event) {
     const Error event = describe(report.events.front(), simulation);

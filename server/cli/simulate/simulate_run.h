@@ -16,6 +16,7 @@ struct RunTotals {
   std::uint64_t guard_events = 0;
   std::uint64_t wall_stops = 0;               ///< see AdvanceReport
   std::uint64_t unsolved_drifts = 0;          ///< see AdvanceReport
+  std::uint64_t device_steps = 0;             ///< steps that a device has taken
   std::chrono::duration<double> stepping{0};  ///< wall time of all steps
 };
 

@@ -1,0 +1,114 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/device/opencl/devices.h"
+
+/// Kernels of one device, their buffers, and the queue that runs them in order.
+namespace vat::opencl {
+
+/// A call of OpenCL has failed: the device is lost, or out of memory, or a kernel is invalid.
+class DeviceFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class Program;
+
+/// A buffer of bytes on the device. It must not outlive its program.
+class Buffer {
+ public:
+  Buffer() = default;
+  /// Throws DeviceFailure if the device has no memory left.
+  Buffer(const Program& program, std::size_t bytes);
+  Buffer(Buffer&& other) noexcept
+      : program_(other.program_), memory_(std::exchange(other.memory_, nullptr)) {}
+  Buffer& operator=(Buffer&& other) noexcept {
+    std::swap(program_, other.program_);
+    std::swap(memory_, other.memory_);
+    return *this;
+  }
+  ~Buffer();
+
+  cl_mem memory() const { return memory_; }
+
+ private:
+  const Program* program_ = nullptr;
+  cl_mem memory_ = nullptr;
+};
+
+class Program {
+ public:
+  /// Compiles `source` for `device`. Fails with the code "device_failed", the name of the driver
+  /// and the log of its compiler.
+  static Result<std::unique_ptr<Program>> create(const Device& device, const char* source,
+                                                 const std::string& options);
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+  ~Program();
+
+  const Device& device() const { return device_; }
+
+  // The functions below throw DeviceFailure. Commands run in the order of their calls.
+
+  /// Runs the kernel `name` for `count` work-items in groups of kGroup. `arguments` are buffers and
+  /// values. The last group may be incomplete, so that a kernel must compare its index with its
+  /// own count.
+  template <class... Arguments>
+  void run(const char* name, std::size_t count, const Arguments&... arguments) {
+    cl_kernel kernel = find_kernel(name);
+    cl_uint index = 0;
+    (set_argument(name, kernel, index++, arguments), ...);
+    enqueue(name, kernel, count);
+  }
+  template <class T>
+  void write(const Buffer& buffer, std::span<const T> values) {
+    write_bytes(buffer, values.data(), values.size_bytes());
+  }
+  /// Waits for all commands. Then reads from the start of the buffer.
+  template <class T>
+  void read(const Buffer& buffer, std::span<T> values) {
+    read_bytes(buffer, values.data(), values.size_bytes());
+  }
+  void copy(const Buffer& from, const Buffer& to, std::size_t bytes);
+  void fill_with_zeros(const Buffer& buffer, std::size_t bytes);
+
+  static constexpr std::size_t kGroup = 256;
+
+ private:
+  friend class Buffer;
+
+  Program(const Api& api, Device device) : api_(api), device_(std::move(device)) {}
+  Status build(const char* source, const std::string& options);
+  cl_kernel find_kernel(const char* name);
+  void set_argument(const char* name, cl_kernel kernel, cl_uint index, const Buffer& buffer) {
+    cl_mem memory = buffer.memory();
+    set_bytes(name, kernel, index, sizeof memory, &memory);
+  }
+  template <class T>
+  void set_argument(const char* name, cl_kernel kernel, cl_uint index, const T& value) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    set_bytes(name, kernel, index, sizeof value, &value);
+  }
+  void set_bytes(const char* name, cl_kernel kernel, cl_uint index, std::size_t size,
+                 const void* bytes);
+  void enqueue(const char* name, cl_kernel kernel, std::size_t count);
+  void write_bytes(const Buffer& buffer, const void* bytes, std::size_t size);
+  void read_bytes(const Buffer& buffer, void* bytes, std::size_t size);
+  void check(cl_int code, const char* action) const;
+
+  const Api& api_;
+  Device device_;
+  cl_context context_ = nullptr;
+  cl_command_queue queue_ = nullptr;
+  cl_program program_ = nullptr;
+  std::vector<std::pair<std::string, cl_kernel>> kernels_;
+};
+
+}  // namespace vat::opencl

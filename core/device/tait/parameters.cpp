@@ -1,0 +1,149 @@
+#include "core/device/tait/parameters.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/laws/vat_motion.h"
+#include "core/limits.h"
+#include "core/liquid/pairs/coupled_pairs.h"
+#include "core/model/compile.h"
+#include "core/support/check.h"
+
+namespace vat {
+namespace {
+
+constexpr int kMaxBits = 23;  ///< exact in single precision
+constexpr int kMinBits = 19;
+constexpr Real kMostCells = 4096;
+constexpr Real kPlaces = 1 << 29;  ///< limit of integer positions in step.cl
+
+void store(const Vec3& from, double (&to)[3]) {
+  for (int k = 0; k < 3; ++k) to[k] = from[k];
+}
+void store(const Vec3& from, float (&to)[3]) {
+  for (int k = 0; k < 3; ++k) to[k] = static_cast<float>(from[k]);
+}
+
+/// The box of the cells: the vat, or the liquid at time 0 with half its size around it. Particles
+/// outside are in the outermost cells, which is slower, but not less accurate.
+std::array<Vec3, 2> box_of(const Model& model) {
+  if (model.scene.vat) return {model.scene.vat->min, model.scene.vat->max};
+  Vec3 low = Vec3::Constant(std::numeric_limits<Real>::infinity());
+  Vec3 high = -low;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const std::shared_ptr<const SampledBody> sample = sample_of(model, b);
+    for (const Vec3& position : sample->positions) {
+      low = low.cwiseMin(position);
+      high = high.cwiseMax(position);
+    }
+  }
+  const Vec3 margin = (high - low) / 2;
+  return {low - margin, high + margin};
+}
+
+/// The first coordinate inside a wall that counts as inside; see wall_distance().
+Real plane_of(const Vat& vat, const VatMotion& motion, int wall) {
+  const int axis = wall / 2;
+  Vec3 p = Vec3::Zero();
+  p[axis] = (wall % 2 == 0 ? vat.min : vat.max)[axis] + motion.offset[axis];
+  const Real inwards = wall % 2 == 0 ? kMaxLength : -kMaxLength;
+  while (wall_distance(vat, motion, wall, p) < 0) p[axis] = std::nextafter(p[axis], inwards);
+  return p[axis];
+}
+
+}  // namespace
+
+void TaitGeometry::set_grid(const Model& model) {
+  const auto [low, high] = box_of(model);
+  const Real support = model.liquids[model.material[0]]->support_radius;
+  const Real extent = (high - low).maxCoeff() / support;
+  // Twice the box fits into the integers if possible, with the finest unit.
+  const int bits =
+      std::clamp(static_cast<int>(std::floor(std::log2(kPlaces / std::max(Real{1}, 2 * extent)))),
+                 kMinBits, kMaxBits);
+  // A cell is half a support radius. In a large box, cells are larger, so that they are not much
+  // more than the particles.
+  int doublings = -1;
+  while (true) {
+    const Real cell = std::ldexp(support, doublings);
+    Real count = 1;
+    for (int k = 0; k < 3; ++k) {
+      const Real along = std::max(Real{1}, std::ceil((high[k] - low[k]) / cell));
+      count *= along;
+      constant_.cells[k] = static_cast<std::int32_t>(std::min(along, kPlaces));
+    }
+    if (count <= kMostCells + 4 * static_cast<Real>(model.particle_count)) break;
+    ++doublings;
+  }
+  origin_ = low;
+  const Real unit = std::ldexp(support, -bits);
+  constant_.cell_bits = bits + doublings;
+  constant_.reach = doublings < 0 ? 2 : 1;
+  constant_.support = 1 << bits;
+  constant_.inverse_unit = 1 / unit;
+  constant_.unit = static_cast<float>(unit);
+  constant_.in_supports = std::ldexp(1.0F, -bits);
+}
+
+TaitGeometry::TaitGeometry(const Model& model, const GuardBounds& bounds) {
+  VAT_CHECK(model.liquid_count == model.particle_count && model.liquid_count > 0);
+  set_grid(model);
+  const LiquidModel& liquid = *model.liquids[model.material[0]];
+  store(bounds.min, constant_.domain_low);
+  store(bounds.max, constant_.domain_high);
+  const Real travel = *std::ranges::min_element(bounds.travel);
+  const Real speed = std::min(kMaxSpeed, travel / model.scene.numerics.step);
+  constant_.greatest_speed2 = speed * speed;
+  constant_.density = static_cast<float>(liquid.rest_density);
+  constant_.stiffness = static_cast<float>(liquid.rest_density * liquid.stiffness);
+  // The acceleration is force / mass, and mass / rest volume is the density.
+  constant_.slope_factor = static_cast<float>(slope_factor(model, liquid) / liquid.rest_density);
+  constant_.viscosity = static_cast<float>(liquid.central_viscosity / liquid.support_radius);
+  for (const int wall : model.walls) constant_.walls |= 1 << wall;
+  constant_.count = static_cast<std::int32_t>(model.particle_count);
+}
+
+TaitParameters TaitGeometry::at(const Model& model, const TaitMoment& moment) const {
+  TaitParameters p = constant_;
+  const Scene& scene = model.scene;
+  const VatMotion motion = scene.vat ? vat_motion(*scene.vat, moment.time) : VatMotion{};
+  const Vec3 origin = origin_ + motion.offset;
+  store(origin, p.origin);
+  store(motion.velocity, p.wall_velocity);
+  const Vec3 gravity = scene.forces.gravity ? scene.gravity : Vec3(Vec3::Zero());
+  const Vec3 fall = fall_in_vat(model, motion, Vec3::Zero());
+  store(gravity, p.gravity);
+  store(fall, p.fall);
+  const LiquidModel& liquid = *model.liquids[model.material[0]];
+  p.layer = static_cast<float>(liquid.rest_density * fall.norm() * liquid.spacing);
+  if (scene.settling && moment.time < scene.settling->until) {
+    p.drag = static_cast<float>(scene.settling->drag);
+    store(motion.velocity, p.still);
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    p.wall_low[axis] = -std::numeric_limits<double>::infinity();
+    p.wall_high[axis] = std::numeric_limits<double>::infinity();
+  }
+  for (const int wall : model.walls) {
+    const int axis = wall / 2;
+    const Real plane = plane_of(*scene.vat, motion, wall);
+    const auto twice =
+        static_cast<std::int32_t>(std::llround(2 * (plane - origin[axis]) * p.inverse_unit));
+    (wall % 2 == 0 ? p.wall_low : p.wall_high)[axis] = plane;
+    (wall % 2 == 0 ? p.twice_low : p.twice_high)[axis] = twice;
+  }
+  p.closing = moment.closing;
+  p.opening = moment.opening;
+  p.drift = moment.drift;
+  p.prediction = moment.prediction;
+  return p;
+}
+
+std::size_t TaitGeometry::cell_count() const {
+  std::size_t count = 1;
+  for (const std::int32_t along : constant_.cells) count *= static_cast<std::size_t>(along);
+  return count;
+}
+
+}  // namespace vat

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/guard/guard.h"
+#include "core/model/model.h"
+
+namespace vat {
+
+/// The struct Parameters of core/device/tait/step.cl, with the same members in the same order.
+struct TaitParameters {
+  double origin[3];     ///< of integer positions and of cells, moves with the vat [m]
+  double inverse_unit;  ///< of integer positions [1/m]
+  double wall_low[3];   ///< infinite without a wall [m]
+  double wall_high[3];
+  double wall_velocity[3];
+  double domain_low[3];  ///< bounds of valid positions [m]
+  double domain_high[3];
+  double greatest_speed2;  ///< bound of valid speeds, squared [m^2/s^2]
+  double closing;          ///< duration of the kick at the end of a step; 0 without [s]
+  double opening;          ///< duration of the kick at the start of a step [s]
+  double drift;            ///< [s]
+  double prediction;       ///< duration of the kick of velocities in viscous forces [s]
+  float gravity[3];
+  float still[3];             ///< velocity that the settling drag leaves [m/s]
+  float drag;                 ///< of settling [1/s]
+  float fall[3];              ///< free fall in the frame of the vat [m/s^2]
+  float unit;                 ///< [m]
+  float in_supports;          ///< unit / support radius
+  float density;              ///< at rest [kg/m^3]
+  float layer;                ///< pressure under one layer of particles [Pa]
+  float stiffness;            ///< density times square of the speed of sound [Pa]
+  float slope_factor;         ///< acceleration / sum of pressures and gradients
+  float viscosity;            ///< central viscosity / support radius
+  std::int32_t twice_low[3];  ///< 2 wall_low in integer positions
+  std::int32_t twice_high[3];
+  std::int32_t cells[3];
+  std::int32_t cell_bits;  ///< a cell has 2^cell_bits integer positions along each axis
+  std::int32_t reach;      ///< cells that a support radius extends into beside the own one
+  std::int32_t support;    ///< support radius in integer positions
+  std::int32_t walls;      ///< bit w: wall w exists
+  std::int32_t count;      ///< particles
+};
+
+/// A moment of a step: the durations of its kicks and of its drift, and the time after the drift.
+struct TaitMoment {
+  Real time = 0;  ///< [s]
+  Real closing = 0;
+  Real opening = 0;
+  Real drift = 0;
+  Real prediction = 0;
+};
+
+/// Computes the parameters of a model.
+class TaitGeometry {
+ public:
+  TaitGeometry(const Model& model, const GuardBounds& bounds);
+
+  TaitParameters at(const Model& model, const TaitMoment& moment) const;
+  std::size_t cell_count() const;
+
+ private:
+  void set_grid(const Model& model);
+
+  TaitParameters constant_{};
+  Vec3 origin_ = Vec3::Zero();  ///< without the displacement of the vat [m]
+};
+
+}  // namespace vat

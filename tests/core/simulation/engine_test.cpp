@@ -1,0 +1,146 @@
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "core/stepping/step_engine.h"
+#include "tests/support/shaken_vat.h"
+
+// How a simulation uses the engine of a device, with an engine in place of a device.
+
+namespace vat::engine_test {
+namespace {
+
+using namespace test;
+
+/// An engine that records its calls. Its steps leave the particles where they are.
+struct Recorded {
+  int binds = 0;
+  int reads = 0;
+  std::vector<bool> continued{};  ///< by advance()
+  bool refuses = false;
+  bool is_lost = false;
+  bool is_bindable = true;
+};
+
+class FakeEngine : public StepEngine {
+ public:
+  explicit FakeEngine(Recorded& record) : record_(record) {}
+  std::string_view arithmetic() const override { return "fake"; }
+  Status bind(std::shared_ptr<const Model>) override {
+    ++record_.binds;
+    if (!record_.is_bindable) return Error{"not_on_device", "/bodies/1/kind", "no solids"};
+    return {};
+  }
+  Result<bool> advance(const EngineInput& input, std::uint32_t steps) override {
+    record_.continued.push_back(input.continues);
+    if (record_.is_lost) return Error{"device_failed", "/device", "lost"};
+    if (!record_.refuses) input.report.steps += steps;
+    return !record_.refuses;
+  }
+  Status read(State&) override {
+    ++record_.reads;
+    if (record_.is_lost) return Error{"device_failed", "/device", "lost"};
+    return {};
+  }
+
+ private:
+  Recorded& record_;
+};
+
+Scene make_scene_of_test() {
+  return make_shaken_vat(IntegratorId::velocity_verlet);
+}
+
+Simulation make_with(Recorded& record) {
+  Simulation simulation = make_simulation(make_scene_of_test());
+  EXPECT_TRUE(simulation.set_engine(std::make_unique<FakeEngine>(record)).ok());
+  return simulation;
+}
+
+std::uint64_t hash_on_cpu(std::uint32_t steps) {
+  Simulation simulation = make_simulation(make_scene_of_test());
+  simulation.advance(steps);
+  return simulation.state_hash();
+}
+
+TEST(Engine, TakesTheStepsAndReadsTheStateOnlyIfNeeded) {
+  Recorded record;
+  Simulation simulation = make_with(record);
+  EXPECT_EQ(simulation.arithmetic(), "fake");
+  EXPECT_EQ(simulation.advance(3).device_steps, 3U);
+  EXPECT_EQ(simulation.advance(2).device_steps, 2U);
+  EXPECT_DOUBLE_EQ(simulation.time(), 5 * simulation.step_size());
+  EXPECT_EQ(record.reads, 0);
+  EXPECT_EQ(simulation.bodies().size(), 3U);
+  static_cast<void>(std::as_const(simulation).state_hash());
+  EXPECT_EQ(record.reads, 1);
+  simulation.advance(1);
+  EXPECT_EQ(record.continued, (std::vector{false, true, true}));
+  EXPECT_EQ(record.binds, 1);
+}
+
+TEST(Engine, StartsFromTheStateOfACommand) {
+  Recorded record;
+  Simulation simulation = make_with(record);
+  simulation.advance(1);
+  ASSERT_TRUE(simulation.set_gravity({0, 0, -1}).ok());
+  simulation.advance(1);
+  EXPECT_EQ(record.continued, (std::vector{false, false}));
+  EXPECT_EQ(record.reads, 1);
+}
+
+TEST(Engine, LeavesRefusedStepsToTheCpu) {
+  Recorded record{.refuses = true};
+  Simulation simulation = make_with(record);
+  const AdvanceReport report = simulation.advance(4);
+  EXPECT_EQ(report.device_steps, 0U);
+  EXPECT_FALSE(report.device_error.has_value());
+  EXPECT_EQ(simulation.state_hash(), hash_on_cpu(4));
+  EXPECT_EQ(simulation.arithmetic(), "fake");
+}
+
+TEST(Engine, IsNotUsedAfterAFailure) {
+  Recorded record{.is_lost = true};
+  Simulation simulation = make_with(record);
+  const AdvanceReport report = simulation.advance(4);
+  ASSERT_TRUE(report.device_error.has_value());
+  EXPECT_EQ(report.device_error->code, "device_failed");
+  EXPECT_FALSE(simulation.advance(2).device_error.has_value());
+  EXPECT_EQ(record.continued.size(), 1U);
+  EXPECT_EQ(simulation.state_hash(), hash_on_cpu(6));
+}
+
+TEST(Engine, RepeatsUnreadStepsOnTheCpuIfTheDeviceIsLost) {
+  Recorded record;
+  Simulation simulation = make_with(record);
+  simulation.advance(3);
+  simulation.advance(2);
+  record.is_lost = true;
+  EXPECT_EQ(simulation.state_hash(), hash_on_cpu(5));
+  const AdvanceReport report = simulation.advance(1);
+  ASSERT_TRUE(report.device_error.has_value());
+  EXPECT_EQ(simulation.state_hash(), hash_on_cpu(6));
+}
+
+TEST(Engine, IsRefusedWithTheErrorsOfTheScene) {
+  Recorded record{.is_bindable = false};
+  Simulation simulation = make_simulation(make_scene_of_test());
+  const Status set = simulation.set_engine(std::make_unique<FakeEngine>(record));
+  ASSERT_FALSE(set.ok());
+  EXPECT_EQ(set.errors().front().path, "/bodies/1/kind");
+  EXPECT_EQ(simulation.advance(1).device_steps, 0U);
+}
+
+TEST(Engine, IsNotUsedAfterACommandAddsAFeatureThatItLacks) {
+  Recorded record;
+  Simulation simulation = make_with(record);
+  record.is_bindable = false;
+  ASSERT_TRUE(simulation.set_gravity({0, 0, -1}).ok());
+  const AdvanceReport report = simulation.advance(1);
+  ASSERT_TRUE(report.device_error.has_value());
+  EXPECT_EQ(report.device_error->code, "not_on_device");
+  EXPECT_EQ(report.steps, 1U);
+}
+
+}  // namespace
+}  // namespace vat::engine_test

@@ -1,0 +1,329 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "core/device/device_choice.h"
+#include "protocol/scene/scene_json.h"
+#include "tests/support/scenes.h"
+
+// Weakly compressible liquids on an OpenCL device. The test machine computes them by PoCL.
+
+namespace vat::device_test {
+namespace {
+
+using namespace test;
+
+constexpr Real kSpacing = 0.02;
+
+/// A column of water that is narrower than its vat, so that it collapses.
+Scene make_column() {
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
+  scene.pressure_solver = PressureSolver::tait;
+  scene.gravity = {0, 0, -9.81};
+  scene.materials = {make_liquid("water", 1000, {400, 0.01, 2 * kSpacing})};
+  scene.materials[0].liquid->artificial_viscosity = 0.1;
+  scene.vat = Vat{{0, 0, 0}, {0.3, 0.12, 0.4}, false, {}};
+  scene.bodies = {BodyDescription{"column", BodyKind::liquid, "water",
+                                  BoxShape{{0.08, 0.06, 0.12}, {0.16, 0.12, 0.24}}, kSpacing}};
+  return scene;
+}
+
+std::unique_ptr<StepEngine> make_device(const char* text = "opencl") {
+  Result<std::unique_ptr<StepEngine>> engine = make_engine(parse_device(text).value());
+  if (!engine) throw std::runtime_error(engine.errors().front().message);
+  return std::move(engine).value();
+}
+
+Simulation make_on_device(const Scene& scene) {
+  Simulation simulation = make_simulation(scene);
+  if (const Status set = simulation.set_engine(make_device()); !set) {
+    throw std::runtime_error(set.errors().front().path);
+  }
+  return simulation;
+}
+
+struct SceneCase {
+  const char* name;
+  std::function<void(Scene&)> edit;
+};
+
+const SceneCase kScenes[] = {
+    {"column", [](Scene&) {}},
+    {"in a corner with a lid",
+     [](Scene& scene) {
+       scene.vat->lid = true;
+       scene.vat->max = {0.3, 0.12, 0.25};
+     }},
+    {"sliding vat",
+     [](Scene& scene) {
+       scene.vat->motion = SlideMotion{Vec3(1, 0, 0.5).normalized(), 0.1, 0.2};
+     }},
+    {"two dimensions",
+     [](Scene& scene) {
+       scene.dimensions = 2;
+       std::get<BoxShape>(scene.bodies[0].shape).center.y() = 0;
+       scene.vat->min.y() = -1;
+       scene.vat->max.y() = 1;
+     }},
+    {"settling",
+     [](Scene& scene) {
+       scene.settling = Settling{20, 0.015};
+     }},
+    {"without a vat", [](Scene& scene) { scene.vat.reset(); }},
+    {"without gravity",
+     [](Scene& scene) {
+       scene.forces.gravity = false;
+       scene.bodies[0].velocity = {0.5, 0, 0.2};
+     }},
+    {"two bodies",
+     [](Scene& scene) {
+       scene.bodies.push_back(scene.bodies[0]);
+       scene.bodies[1].name = "drop";
+       scene.bodies[1].shape = SphereShape{{0.22, 0.06, 0.2}, 0.04};
+       scene.bodies[1].velocity = {-1, 0, -2};
+     }},
+};
+
+/// The greatest difference of positions after the same time [m].
+Real difference(const Simulation& a, const Simulation& b) {
+  Real greatest = 0;
+  for (std::size_t body = 0; body < a.bodies().size(); ++body) {
+    const BodyView one = a.bodies()[body];
+    const BodyView other = b.bodies()[body];
+    for (std::size_t i = 0; i < one.positions.size(); ++i) {
+      greatest = std::max(greatest, (one.positions[i] - other.positions[i]).norm());
+    }
+  }
+  return greatest;
+}
+
+// Both compute sums over pairs in single precision. Differences from double precision are therefore
+// of equal size, up to the order of sums.
+TEST(Device, HasTheAccuracyOfTheCpu) {
+  constexpr std::uint32_t kSteps = 30;
+  for (const SceneCase& one : kScenes) {
+    SCOPED_TRACE(one.name);
+    Scene scene = make_column();
+    one.edit(scene);
+    Simulation device = make_on_device(scene);
+    Simulation single = make_simulation(scene);
+    scene.pair_precision = PairPrecision::double_precision;
+    Simulation exact = make_simulation(scene);
+    const AdvanceReport report = device.advance(kSteps);
+    const AdvanceReport expected = single.advance(kSteps);
+    exact.advance(kSteps);
+    EXPECT_EQ(report.device_steps, kSteps);
+    EXPECT_EQ(report.steps, expected.steps);
+    EXPECT_EQ(report.force_evaluations, expected.force_evaluations);
+    EXPECT_EQ(report.wall_stops, expected.wall_stops);
+    EXPECT_LT(difference(device, exact), 3 * difference(single, exact));
+    EXPECT_GT(difference(device, make_simulation(scene)), 1e-4) << "it moves";
+  }
+}
+
+TEST(Device, ReflectsParticlesAtWalls) {
+  Scene scene = make_column();
+  // The particles are beyond a wall after one step.
+  const std::vector<Vec3> positions = {{0.001, 0.06, 0.2}, {0.299, 0.06, 0.1}, {0.1, 0.001, 0.001}};
+  scene.gravity = Vec3::Zero();
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    ParticleShape shape = make_particles({positions[i]}, 8e-3);
+    scene.bodies.push_back(
+        make_body("particle " + std::to_string(i), BodyKind::liquid, "water", shape, 0.01));
+  }
+  scene.bodies.erase(scene.bodies.begin());
+  scene.bodies[0].velocity = {-3, 1, 0};
+  scene.bodies[1].velocity = {3, 0, 1};
+  scene.bodies[2].velocity = {0, -3, -4};
+  Simulation device = make_on_device(scene);
+  Simulation cpu = make_simulation(scene);
+  EXPECT_EQ(device.advance(1).wall_stops, 3U);
+  EXPECT_EQ(cpu.advance(1).wall_stops, 3U);
+  // An error of the relative density of one rounding unit accelerates by its pressure times the
+  // slope of the kernel, which is at most 20 / h.
+  const Real dt = scene.numerics.step;
+  const Real error = 400 * std::ldexp(1.0, -23) * 20 / (2 * kSpacing);
+  for (std::size_t body = 0; body < positions.size(); ++body) {
+    EXPECT_LT((position_of(device, body) - position_of(cpu, body)).norm(), error * dt * dt);
+    EXPECT_LT((velocity_of(device, body) - velocity_of(cpu, body)).norm(), error * dt);
+  }
+}
+
+TEST(Device, HasTheSameBitsInAnyPortionsOfSteps) {
+  const Scene scene = make_column();
+  Simulation one = make_on_device(scene);
+  Simulation other = make_on_device(scene);
+  one.advance(40);
+  for (int n = 0; n < 8; ++n) other.advance(n % 2 == 0 ? 3 : 7);
+  EXPECT_EQ(one.state_hash(), other.state_hash());
+  const Snapshot middle = one.snapshot();
+  one.advance(20);
+  const std::uint64_t end = one.state_hash();
+  one.restore(middle);
+  EXPECT_EQ(one.advance(20).device_steps, 20U);
+  EXPECT_EQ(one.state_hash(), end);
+}
+
+TEST(Device, ContinuesAStateOfTheCpuAndTheReverse) {
+  const Scene scene = make_column();
+  Simulation cpu = make_simulation(scene);
+  cpu.advance(20);
+  Simulation device = Simulation::from(cpu.snapshot());
+  EXPECT_EQ(device.state_hash(), cpu.state_hash());
+  ASSERT_TRUE(device.set_engine(make_device()).ok());
+  EXPECT_EQ(device.advance(20).device_steps, 20U);
+  cpu.advance(20);
+  EXPECT_LT(difference(device, cpu), 1e-4 * kSpacing);
+  Simulation back = Simulation::from(device.snapshot());
+  EXPECT_EQ(back.state_hash(), device.state_hash());
+  EXPECT_EQ(back.advance(20).device_steps, 0U);
+}
+
+// Each operation is rounded as IEEE 754 defines it, so that the hash is a constant. An NVIDIA H200
+// has the same hash.
+TEST(Device, HasTheSameBitsOnEveryDeviceIfExact) {
+  const Result<Scene> scene = read_scene_file(VAT_SOURCE_DIR "/protocol/scenes/dam-break.json");
+  ASSERT_TRUE(scene.ok());
+  Simulation simulation = make_on_device(scene.value());
+  EXPECT_EQ(simulation.arithmetic(), "opencl-exact");
+  EXPECT_EQ(simulation.advance(120).device_steps, 120U);
+  EXPECT_EQ(simulation.state_hash(), 0x5d678a6cc5234a07U);
+}
+
+TEST(Device, LeavesForcesOfUsersToTheCpu) {
+  const Scene scene = make_column();
+  Simulation device = make_on_device(scene);
+  Simulation cpu = make_simulation(scene);
+  for (Simulation* one : {&device, &cpu}) {
+    ASSERT_TRUE(one->grab_start(1, one->bodies()[0].id, 5, {0.1, 0.1, 0.4}).ok());
+  }
+  EXPECT_EQ(device.advance(5).device_steps, 0U);
+  cpu.advance(5);
+  EXPECT_EQ(device.state_hash(), cpu.state_hash());
+  ASSERT_TRUE(device.grab_end(1).ok());
+  EXPECT_EQ(device.advance(5).device_steps, 5U);
+}
+
+TEST(Device, LeavesAFailedStepToTheCpu) {
+  struct Case {
+    const char* name;
+    std::uint32_t steps;
+    std::function<void(Scene&)> edit;
+  };
+  // The greatest speed is half a support radius per step, 20 m/s.
+  const Case cases[] = {
+      {"too fast", 3,
+       [](Scene& s) {
+         s.bodies[0].velocity = {0, 0, 30};
+       }},
+      {"too fast after the last step", 1,
+       [](Scene& s) {
+         s.bodies[0].velocity = {0, 0, -19.995};
+       }},
+      {"too fast after a step but the last", 2,
+       [](Scene& s) {
+         s.bodies[0].velocity = {0, 0, 25};
+         s.settling = Settling{200, 1};
+       }},
+      {"outside the domain", 1,
+       [](Scene& s) {
+         s.bodies[0].shape = SphereShape{{0.15, 0.06, 40.37}, 0.04};
+         s.bodies[0].velocity = {0, 0, 19};
+       }},
+  };
+  for (const Case& one : cases) {
+    SCOPED_TRACE(one.name);
+    Scene scene = make_column();
+    one.edit(scene);
+    Simulation device = make_on_device(scene);
+    Simulation cpu = make_simulation(scene);
+    const AdvanceReport report = device.advance(one.steps);
+    const AdvanceReport expected = cpu.advance(one.steps);
+    EXPECT_EQ(report.device_steps, 0U);
+    EXPECT_GT(report.undone_steps, 0U);
+    EXPECT_EQ(report.undone_steps, expected.undone_steps);
+    EXPECT_EQ(report.steps, expected.steps);
+    EXPECT_EQ(device.state_hash(), cpu.state_hash());
+  }
+}
+
+TEST(Device, RefusesFeaturesThatItLacks) {
+  struct Case {
+    const char* path;
+    std::function<void(Scene&)> edit;
+  };
+  const Case cases[] = {
+      {"/pressure_solver", [](Scene& s) { s.pressure_solver = PressureSolver::gas; }},
+      {"/bodies/1/kind",
+       [](Scene& s) {
+         s.bodies.push_back(make_body("stone", BodyKind::rigid, "water",
+                                      make_particles({{0.25, 0.06, 0.3}}, 0.1), 0.01));
+       }},
+      {"/bodies/1/material",
+       [](Scene& s) {
+         s.materials.push_back(s.materials[0]);
+         s.materials[1].name = "oil";
+         s.bodies.push_back(s.bodies[0]);
+         s.bodies[1].name = "film";
+         s.bodies[1].material = "oil";
+         s.bodies[1].shape = SphereShape{{0.25, 0.06, 0.3}, 0.03};
+       }},
+      {"/periodic",
+       [](Scene& s) {
+         s.vat.reset();
+         s.periodic = Periodicity{{0, 0, 0}, {0.4, 0.4, 0.4}, {true, false, false}};
+       }},
+      {"/central_field",
+       [](Scene& s) {
+         s.central_field = CentralField{{0, 0, 0}, 1};
+       }},
+      {"/sleeping", [](Scene& s) { s.sleeping = Sleeping{}; }},
+      {"/kernel", [](Scene& s) { s.kernel = KernelId::cubic_spline; }},
+      {"/pair_precision", [](Scene& s) { s.pair_precision = PairPrecision::double_precision; }},
+      {"/numerics/integrator",
+       [](Scene& s) { s.numerics.integrator = IntegratorId::symplectic_euler; }},
+      {"/numerics/control", [](Scene& s) { s.numerics.control = StepControl::adaptive; }},
+      {"/numerics/step", [](Scene& s) { s.materials[0].liquid->viscosity = 200; }},
+      {"/materials",
+       [](Scene& s) {
+         s.materials[0].liquid->surface_tension = 0.07;
+         s.materials[0].liquid->support_radius = 2.5 * kSpacing;
+       }},
+      {"/vat/walls", [](Scene& s) { s.vat->walls[4].no_slip = true; }},
+      {"/emitters",
+       [](Scene& s) {
+         s.emitters.push_back({.name = "tap",
+                               .body = "column",
+                               .position = {0.25, 0.06, 0.3},
+                               .radius = 0.03,
+                               .speed = 1,
+                               .most_particles = 2000});
+       }},
+      {"/drains",
+       [](Scene& s) {
+         s.drains.push_back({"hole", {0, 0, 0}, {0.1, 0.1, 0.1}});
+       }},
+  };
+  for (const Case& one : cases) {
+    SCOPED_TRACE(one.path);
+    Scene scene = make_column();
+    one.edit(scene);
+    Simulation simulation = make_simulation(scene);
+    const Status set = simulation.set_engine(make_device());
+    ASSERT_FALSE(set.ok());
+    EXPECT_EQ(set.errors().front().code, "not_on_device");
+    EXPECT_TRUE(std::ranges::any_of(set.errors(), [&](const Error& error) {
+      return error.path == one.path;
+    })) << set.errors().front().path;
+  }
+}
+
+TEST(Device, IsRefusedIfItDoesNotExist) {
+  const auto engine = make_engine(parse_device("opencl:1000").value());
+  ASSERT_FALSE(engine.ok());
+  EXPECT_EQ(engine.errors().front().code, "not_available");
+}
+
+}  // namespace
+}  // namespace vat::device_test
