@@ -54,6 +54,7 @@ class SourceRules(RuleTest):
             "protocol/a.cpp": '#include <nlohmann/json.hpp>\n#include "core/a.h"\n',
             "server/a.cpp": '#include <CLI/CLI.hpp>\n#include "protocol/a.h"\n',
             "server/transport/a.cpp": "#include <websocketpp/server.hpp>\n",
+            "core/device/opencl/a.cpp": "#include <CL/cl.h>\n#include <dlfcn.h>\n",
             "tests/core/a.cpp": '#include "server/a.h"\n#include <gtest/gtest.h>\n',
         })
 
@@ -65,6 +66,7 @@ class SourceRules(RuleTest):
             ("core/a.h", "<boost/asio.hpp>"),
             ("core/a.h", "<chrono>"),
             ("core/a.h", "<iostream>"),
+            ("core/device/tait/a.h", "<CL/cl.h>"),
             ("protocol/a.h", '"server/a.h"'),
             ("protocol/a.h", "<boost/asio.hpp>"),
             ("server/a.h", '"tests/a.h"'),

@@ -13,7 +13,7 @@ GENERATED = re.compile(r"// Written from .*; not to be edited\.\n")  # the first
 # The includes that each layer permits: prefixes of "quoted" headers, and of <angled> headers with a
 # folder or an extension. Headers of the standard library have neither.
 LAYERS = {
-    "core/": (("core/",), ("Eigen/", "hwy/")),
+    "core/": (("core/",), ("CL/", "Eigen/", "dlfcn.h", "hwy/")),
     "protocol/": (("core/", "protocol/"), ("nlohmann/", "tiny_obj_loader.h")),
     "server/": (
         ("core/", "protocol/", "server/"),
@@ -23,7 +23,8 @@ LAYERS = {
 }
 NOT_IN_CORE = {"chrono", "ctime", "iostream", "fstream", "filesystem", "random", "thread"}
 ONLY_IN = {
-    "websocketpp/": "server/transport/", "sqlite3.h": "server/storage/", "zstd.h": "server/storage/",
+    "CL/": "core/device/opencl/", "dlfcn.h": "core/device/opencl/", "sqlite3.h": "server/storage/",
+    "websocketpp/": "server/transport/", "zstd.h": "server/storage/",
 }
 
 # Constructs that make the order of operations depend on threads, addresses or randomness.
