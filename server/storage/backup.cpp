@@ -48,6 +48,18 @@ std::string schema_name(const Part& part) {
   return std::string(part.file).substr(0, std::string_view(part.file).find('.'));
 }
 
+/// Returns the tables of the part that the database has. An older version can lack some.
+std::vector<const char*> existing_tables(Database& database, const std::string& schema,
+                                         const Part& part) {
+  std::vector<const char*> tables;
+  for (const char* const table : part.tables) {
+    Statement query = database.prepare("SELECT 1 FROM " + schema + ".sqlite_master WHERE name = ?");
+    query.bind(0, std::string_view(table));
+    if (query.step()) tables.push_back(table);
+  }
+  return tables;
+}
+
 void copy_parts(const std::string& folder, Database& backup) {
   const std::vector<Part> all = parts();
   for (const Part& part : all) attach(backup, folder + "/" + part.file, schema_name(part));
@@ -55,14 +67,19 @@ void copy_parts(const std::string& folder, Database& backup) {
   backup.execute("BEGIN");
   // The first read of each database determines the moment of its copy.
   for (const Part& part : all) {
+    const std::int64_t version = backup.number("PRAGMA " + schema_name(part) + ".user_version");
+    if (version == 0) {
+      throw StorageError(StorageError::Kind::failed,
+                         folder + "/" + part.file + " is missing or empty");
+    }
     backup.prepare("INSERT INTO main.versions VALUES (?, ?)")
         .bind(0, std::string_view(part.file))
-        .bind(1, backup.number("PRAGMA " + schema_name(part) + ".user_version"))
+        .bind(1, version)
         .run();
     backup.number("SELECT count(*) FROM " + schema_name(part) + ".sqlite_master");
   }
   for (const Part& part : all) {
-    for (const char* const table : part.tables) {
+    for (const char* const table : existing_tables(backup, schema_name(part), part)) {
       backup.execute(("CREATE TABLE main." + copied(table) + " AS SELECT * FROM " +
                       schema_name(part) + "." + table)
                          .c_str());
@@ -82,7 +99,7 @@ void restore_part(const Part& part, const std::string& file, const std::string& 
   query.reset();
   database.execute("BEGIN");  // see copy_parts()
   create_schema(database, part.schema, version);
-  for (const char* const table : part.tables) {
+  for (const char* const table : existing_tables(database, "main", part)) {
     const std::string name(table);
     // The table of a sequence is created with a row for each table.
     if (copied(name) != name) database.execute(("DELETE FROM main." + name).c_str());

@@ -9,7 +9,11 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 
+#include "server/storage/checkpoint_store.h"
+#include "server/storage/saved_states.h"
+#include "server/storage/sqlite/main_database.h"
 #include "tests/server/fixture/host.h"
 #include "tests/support/temporary_folder.h"
 
@@ -63,6 +67,33 @@ TEST_F(Backup, OfARunningServerHasAllThatWasAnswered) {
   EXPECT_EQ(client().result("session.load", {{"name", "a state"}}).at("tick"), 30);
   EXPECT_EQ(client().error("scene.save", {{"name", "a scene"}}).at("code"), 1006) << "its key";
   EXPECT_NE(create_session(), other) << "numbers are not used again";
+}
+
+TEST_F(Backup, OfAnOlderVersionIsOfThatVersion) {
+  host.reset();
+  fs::create_directory(folder.file("older"));
+  const std::pair<const char*, Schema> databases[] = {{"checkpoints.db", checkpoint_schema()},
+                                                      {"states.db", state_schema()},
+                                                      {"vat.db", main_schema()}};
+  for (const auto& [name, schema] : databases) {
+    Database database(folder.file("older/") + name, Database::Mode::create);
+    Transaction transaction(database);
+    create_schema(database, schema, 1);
+    transaction.commit();
+  }
+  Database(folder.file("older/vat.db"), Database::Mode::create)
+      .execute("INSERT INTO log VALUES (7, 1, 2, 3, 4, 'a', 'b', 0)");
+  write_backup(folder.file("older"), file);
+  restore_backup(file, restored);
+  for (const auto& [name, schema] : databases) {
+    Database database(restored + "/" + name, Database::Mode::read);
+    EXPECT_EQ(database.number("PRAGMA user_version"), 1) << name;
+  }
+  EXPECT_EQ(Database(restored + "/vat.db", Database::Mode::read).number("SELECT session FROM log"),
+            7);
+
+  fs::remove(folder.file("older/checkpoints.db"));
+  EXPECT_THROW(write_backup(folder.file("older"), folder.file("b")), StorageError);
 }
 
 TEST_F(Backup, DoesNotReplaceFilesAndSessions) {
