@@ -26,8 +26,10 @@ bool is_log_full(const Storage& storage, std::size_t log_bytes) {
 
 }  // namespace
 
-bool CheckpointPace::is_due(Seconds cost) const {
-  return work_ >= std::min(std::max(wanted_, cost / kMaxShare), kMaxWork);
+bool CheckpointPace::is_due(Seconds cost, std::size_t sessions) const {
+  VAT_CHECK(sessions > 0);
+  const Seconds part = wanted_ / static_cast<double>(sessions);
+  return work_ >= std::min(std::max(part, cost / kMaxShare), kMaxWork);
 }
 
 SessionLog::SessionLog(Storage& storage, std::uint64_t session, const Place& place)
@@ -37,6 +39,7 @@ SessionLog::SessionLog(Storage& storage, std::uint64_t session, const Place& pla
       pace_(storage.settings().checkpoint_after),
       stored_position_(place.position),
       stored_last_(place.last) {
+  storage_.open_log();
   writing_->needs_checkpoint = place.needs_checkpoint;
   writing_->log_bytes = place.log_bytes;
 }
@@ -85,10 +88,11 @@ void SessionLog::configure(std::string name, std::string settings, Journal::Done
       std::move(done));
 }
 
-bool SessionLog::is_checkpoint_due() const {
-  if (writing_->needs_checkpoint) return true;
-  return pace_.is_due(CheckpointPace::Seconds(writing_->checkpoint_cost)) &&
-         storage_.admits_checkpoint();
+SessionLog::Stored SessionLog::due() const {
+  if (writing_->needs_checkpoint) return Stored::checkpoint;
+  const CheckpointPace::Seconds cost(writing_->checkpoint_cost);
+  if (!pace_.is_due(cost, storage_.open_logs())) return Stored::progress;
+  return storage_.admits_checkpoint() ? Stored::checkpoint : Stored::recent_state;
 }
 
 bool SessionLog::is_due(std::uint64_t position, std::uint64_t people,
@@ -97,29 +101,29 @@ bool SessionLog::is_due(std::uint64_t position, std::uint64_t people,
   // The stored progress of a diverged session stays until somebody continues it.
   const bool people_are_stored = writing_->needs_checkpoint || people == stored_people_;
   if (position == stored_position_ && last_ == stored_last_ && people_are_stored) return false;
-  return now - stored_at_ >= kProgressInterval || is_checkpoint_due();
+  return now - stored_at_ >= kProgressInterval || due() != Stored::progress;
 }
 
 void SessionLog::store(SessionMoment moment, SteadyClock::time_point now, bool always) {
   VAT_CHECK(moment.sequence <= last_);
-  const bool with_checkpoint = always || is_checkpoint_due();
-  if (with_checkpoint) pace_.begin();
+  const Stored stored = always ? Stored::checkpoint : due();
+  if (stored != Stored::progress) pace_.begin();
   stored_position_ = moment.position;
   stored_last_ = last_;
   stored_people_ = moment.people;
   stored_at_ = now;
   writing_->under_way = true;
   std::vector<TickHash> hashes;
-  if (with_checkpoint || hashes_.size() >= kHashesAtOnce) hashes.swap(hashes_);
+  if (stored == Stored::checkpoint || hashes_.size() >= kHashesAtOnce) hashes.swap(hashes_);
   storage_.post([&storage = storage_, session = session_, moment = std::move(moment),
-                 hashes = std::move(hashes), with_checkpoint, writing = writing_] {
+                 hashes = std::move(hashes), stored, writing = writing_] {
     const auto end = [writing](auto) { writing->under_way = false; };
     storage.journal().post(
         [&storage, session, progress = moment.progress()] {
           storage.sessions().write_progress(session, progress);
         },
         end);  // a failed write does not prevent the next one
-    if (with_checkpoint) write_checkpoint(storage, session, moment, *writing);
+    if (stored != Stored::progress) write_state(storage, session, moment, stored, *writing);
     storage.checkpoints().write_hashes(session, hashes);
   });
 }
@@ -133,11 +137,17 @@ void SessionLog::store_then(SessionMoment moment, SteadyClock::time_point now,
   });
 }
 
-void SessionLog::write_checkpoint(Storage& storage, std::uint64_t session,
-                                  const SessionMoment& moment, Writing& writing) {
+void SessionLog::write_state(Storage& storage, std::uint64_t session, const SessionMoment& moment,
+                             Stored stored, Writing& writing) {
   const auto begin = thread_time();
-  const std::size_t bytes = storage.checkpoints().write(
-      {session, moment.position, moment.sequence, moment.fields(), moment.snapshot.to_bytes()});
+  const Checkpoint checkpoint{session, moment.position, moment.sequence, moment.fields(),
+                              moment.snapshot.to_bytes()};
+  if (stored == Stored::recent_state) {
+    if (storage.recent_states().write(checkpoint)) storage.count_recent_state();
+    writing.checkpoint_cost = CheckpointPace::Seconds(thread_time() - begin).count();
+    return;
+  }
+  const std::size_t bytes = storage.checkpoints().write(checkpoint);
   // Processor time, without waits that do not delay other sessions.
   const CheckpointPace::Seconds cost = thread_time() - begin;
   writing.checkpoint_cost = cost.count();

@@ -30,13 +30,15 @@ class CheckpointPace {
   /// Greatest work between two checkpoints, regardless of their cost.
   static constexpr Seconds kMaxWork = Seconds(10);
 
-  /// `wanted` is the work (computing time) between two checkpoints, if the cost permits.
+  /// `wanted` is the work (computing time) of all sessions that a recovery of the server repeats,
+  /// if the cost permits. Each of n sessions has an nth of it between two checkpoints.
   explicit CheckpointPace(Seconds wanted) : wanted_(wanted) {}
 
   /// Adds computing time of ticks and commands.
   void add_work(Seconds time) { work_ += time; }
-  /// Returns whether a checkpoint is due. `cost` is the computing time of the last checkpoint.
-  bool is_due(Seconds cost) const;
+  /// Returns whether a checkpoint is due. `cost` is the computing time of the last checkpoint, and
+  /// `sessions` the number of sessions of the server.
+  bool is_due(Seconds cost, std::size_t sessions) const;
   void begin() { work_ = Seconds(0); }
 
  private:
@@ -55,7 +57,11 @@ class SessionLog {
     bool needs_checkpoint = false;  ///< the log alone cannot reproduce this state
     std::size_t log_bytes = 0;      ///< size of the stored entries
   };
+  /// The storage must outlive the log.
   SessionLog(Storage& storage, std::uint64_t session, const Place& place);
+  ~SessionLog() { storage_.close_log(); }
+  SessionLog(const SessionLog&) = delete;
+  SessionLog& operator=(const SessionLog&) = delete;
 
   /// Assigns sequences to the entries, which follow the last stored entry.
   void number(std::span<LogEntry> entries) const;
@@ -84,10 +90,11 @@ class SessionLog {
   void add_hash(std::uint64_t position, std::uint64_t hash) { hashes_.push_back({position, hash}); }
   void add_work(CheckpointPace::Seconds time) { pace_.add_work(time); }
   /// Returns whether store() should be called. The session must have changed since the last call.
-  /// In addition, the last call must be at least a second ago, or a checkpoint must be due.
+  /// In addition, the last call must be at least a second ago, or a state must be due.
   /// `people` counts the changes of the participants.
   bool is_due(std::uint64_t position, std::uint64_t people, SteadyClock::time_point now) const;
-  /// Stores the progress. Also stores a checkpoint if a checkpoint is due or `always` is true.
+  /// Stores the progress. Also stores the state if it is due: as a checkpoint if the budget admits
+  /// one, otherwise as a recent state. Stores a checkpoint in any case if `always` is true.
   void store(SessionMoment moment, SteadyClock::time_point now, bool always = false);
   /// Stores the progress and a checkpoint, and then runs `task` on the storage's thread. The
   /// journal contains the progress by then.
@@ -105,11 +112,12 @@ class SessionLog {
     std::atomic<std::size_t> log_bytes = 0;
   };
   static constexpr std::uint64_t kSleepingHashInterval = 16;
-  static void write_checkpoint(Storage& storage, std::uint64_t session, const SessionMoment& moment,
-                               Writing& writing);
+  enum class Stored { progress, recent_state, checkpoint };
+  static void write_state(Storage& storage, std::uint64_t session, const SessionMoment& moment,
+                          Stored stored, Writing& writing);
   static void bound_log(Storage& storage, std::uint64_t session, const SessionMoment& moment,
                         Writing& writing);
-  bool is_checkpoint_due() const;
+  Stored due() const;
 
   Storage& storage_;
   const std::uint64_t session_;

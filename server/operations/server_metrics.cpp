@@ -88,6 +88,8 @@ void append_present(std::string& text, const ServerMetrics::Gauges& now) {
                  now.storage.checkpoints);
   append_counter(text, "vat_checkpoint_bytes_total", "Size of these checkpoints.",
                  now.storage.checkpoint_bytes);
+  append_counter(text, "vat_recent_states_total", "Written states that are not synchronised.",
+                 now.storage.recent_states);
   append_head(text, "vat_checkpoint_seconds_total", "counter",
               "Processor time of the writing of checkpoints.");
   append_sample(text, "vat_checkpoint_seconds_total", "", now.storage.checkpoint_time.count());

@@ -37,25 +37,51 @@ Simulation SessionRecovery::begin() {
   }
   instructions_ = instructions.value();
   const std::vector<CheckpointPlace> places = storage_.checkpoints().places(stored_.number);
+  if (const auto recent =
+          find_recent(places.empty() ? std::nullopt : std::optional(places.back()))) {
+    if (auto simulation = begin_at(*recent)) return *std::move(simulation);
+  }
   for (auto place = places.rbegin(); place != places.rend(); ++place) {
-    if (auto simulation = begin_at(*place)) return *std::move(simulation);
+    if (auto simulation = begin_at_place(*place)) return *std::move(simulation);
   }
   return begin_at_scene();
 }
 
-std::optional<Simulation> SessionRecovery::begin_at(const CheckpointPlace& place) {
+std::optional<Checkpoint> SessionRecovery::find_recent(
+    const std::optional<CheckpointPlace>& newest) {
+  std::optional<Checkpoint> recent = storage_.recent_states().read(stored_.number);
+  if (!recent) return {};
+  const auto moment_of = [](const auto& one) { return std::pair(one.position, one.sequence); };
+  if ((!newest || moment_of(*recent) > moment_of(*newest)) &&
+      recent->sequence <= storage_.sessions().last_sequence(stored_.number)) {
+    return recent;
+  }
+  storage_.recent_states().remove(stored_.number);
+  return {};
+}
+
+std::optional<Simulation> SessionRecovery::begin_at_place(const CheckpointPlace& place) {
   try {
     const std::optional<Checkpoint> checkpoint = storage_.checkpoints().read(place);
-    if (!checkpoint) return {};
+    if (checkpoint) return begin_at(*checkpoint);
+  } catch (const StorageError& error) {
+    spdlog::warn("session s{}: its checkpoint at {} is skipped: {}", stored_.number, place.position,
+                 error.what());
+  }
+  return {};
+}
+
+std::optional<Simulation> SessionRecovery::begin_at(const Checkpoint& checkpoint) {
+  try {
     Result<Simulation> simulation =
-        Simulation::load(checkpoint->state, &environment_.runner, instructions_);
+        Simulation::load(checkpoint.state, &environment_.runner, instructions_);
     if (!simulation) fail("its state", simulation.errors().front().message);
-    SessionMoment moment = read_moment(checkpoint->fields, simulation.value().snapshot());
+    SessionMoment moment = read_moment(checkpoint.fields, simulation.value().snapshot());
     const Simulation as_loaded = load_scene(moment.loaded);
     start_.emplace(Start{std::move(moment), as_loaded.snapshot()});
     return std::move(simulation).value();
   } catch (const StorageError& error) {
-    spdlog::warn("session s{}: its checkpoint at {} is skipped: {}", stored_.number, place.position,
+    spdlog::warn("session s{}: its state at {} is skipped: {}", stored_.number, checkpoint.position,
                  error.what());
     return {};
   }

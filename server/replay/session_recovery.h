@@ -9,7 +9,8 @@
 
 namespace vat {
 
-/// Recovery of a stored session. Starts from the newest readable checkpoint and repeats the later
+/// Recovery of a stored session. Starts from the newest readable state (a recent state or a
+/// checkpoint) and repeats the later
 /// log, up to the last stored or reported position. Compares the state with the stored hash.
 class SessionRecovery {
  public:
@@ -33,7 +34,11 @@ class SessionRecovery {
     SessionMoment moment;
     Snapshot as_loaded;
   };
-  std::optional<Simulation> begin_at(const CheckpointPlace& place);
+  /// Returns the recent state if it is newer than the checkpoint `newest` and its commands are in
+  /// the log. Removes the state otherwise.
+  std::optional<Checkpoint> find_recent(const std::optional<CheckpointPlace>& newest);
+  std::optional<Simulation> begin_at_place(const CheckpointPlace& place);
+  std::optional<Simulation> begin_at(const Checkpoint& checkpoint);
   Simulation begin_at_scene();
   Simulation load_scene(std::uint64_t sequence);
   void execute_log(SessionCore& core);

@@ -273,12 +273,13 @@ std::vector<Setting> storage_group(ServeSettings& s) {
       word_setting("durability", s.durability, {"power", "process"},
                    "Failures that answered commands survive; power: also a power failure; process: "
                    "a crash of the server, without waits for the disk"),
-      time_setting("checkpoint_seconds", s.storage.checkpoint_after, 0.001, kMaxSeconds,
-                   "Computing time between two checkpoints of a session, which recovery repeats at "
-                   "most; longer if checkpoints would take more than 5 % of the time or exceed "
-                   "checkpoint_bytes_per_second"),
+      time_setting(
+          "checkpoint_seconds", s.storage.checkpoint_after, 0.001, kMaxSeconds,
+          "Computing time of all sessions that a recovery repeats at most; longer if storing "
+          "states would take more than 5 % of the time, or after a power failure if "
+          "checkpoints would exceed checkpoint_bytes_per_second"),
       number_setting("checkpoint_bytes_per_second", s.storage.checkpoint_bytes_per_second, 1024,
-                     1e9, "Written bytes of all checkpoints; the default is 15.6 GB per day"),
+                     1e9, "Written bytes of all checkpoints; the default is 13 GB per day"),
       time_setting(
           "drain_seconds", s.drain_time, 0, kMaxSeconds,
           "Time between SIGTERM and the end of the server, in which clients stay connected"),

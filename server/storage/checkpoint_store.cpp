@@ -35,8 +35,6 @@ CREATE TABLE hashes (
 ) STRICT;
 )"};
 
-constexpr std::size_t kMaxStateBytes = std::size_t{1} << 30;  // of 200 000 particles a third
-
 /// Returns the index of the checkpoint whose removal leaves the smallest gap, the oldest of
 /// several. Never the newest, and the oldest only of two.
 std::size_t find_redundant(const std::vector<CheckpointPlace>& places) {

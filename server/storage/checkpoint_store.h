@@ -23,6 +23,9 @@ struct Checkpoint {
   std::vector<std::uint8_t> state;  ///< state of the simulation
 };
 
+/// Greatest size of a state. The state of 200 000 particles has a third of it.
+inline constexpr std::size_t kMaxStateBytes = std::size_t{1} << 30;
+
 /// Location of a checkpoint, without its content.
 struct CheckpointPlace {
   std::uint64_t row = 0;

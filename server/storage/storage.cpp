@@ -13,7 +13,8 @@
 namespace vat {
 namespace {
 
-constexpr double kSavedSeconds = 60;  // of the budget of checkpoints
+constexpr double kSavedSeconds = 60;                          // of the budget of checkpoints
+constexpr std::size_t kRecentBytes = std::size_t{256} << 20;  // of the page cache
 constexpr auto kMoveInterval = std::chrono::seconds(1);
 // While commands arrive, the copied part of a log is not reused. Beyond this size they wait some
 // milliseconds once, so that it is.
@@ -43,6 +44,7 @@ Storage::Storage(const std::string& folder, const StorageSettings& settings, Clo
       sessions_(folder_.file("vat.db"), settings.durability),
       checkpoints_(folder_.file("checkpoints.db"), settings.checkpoint_bytes,
                    settings.checkpoint_bytes_in_all),
+      recent_states_(folder_.file("recent"), kRecentBytes),
       states_(folder_.file("states.db"), settings.durability),
       scenes_(sessions_.main()),
       tokens_(sessions_.main()),
@@ -90,6 +92,7 @@ StorageCounts Storage::counts() const {
   counts.failures += failures_;
   counts.checkpoints = checkpoints_written_;
   counts.checkpoint_bytes = checkpoint_bytes_;
+  counts.recent_states = recent_states_written_;
   counts.checkpoint_time = std::chrono::nanoseconds(checkpoint_nanoseconds_);
   return counts;
 }
@@ -118,6 +121,7 @@ void Storage::remove_closed() {
     std::vector<std::uint64_t> open;  // no checkpoint is written meanwhile: this thread writes them
     for (const StoredSession& session : sessions_.sessions()) open.push_back(session.number);
     checkpoints_.keep_only(open);
+    recent_states_.keep_only(open);
   });
 }
 

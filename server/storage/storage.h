@@ -11,6 +11,7 @@
 #include "server/storage/checkpoint_store.h"
 #include "server/storage/data_folder.h"
 #include "server/storage/journal.h"
+#include "server/storage/recent_states.h"
 #include "server/storage/saved_scenes.h"
 #include "server/storage/saved_states.h"
 #include "server/storage/session_store.h"
@@ -39,6 +40,7 @@ class Storage {
   /// Returns the thread for writes to sessions(), scenes() and tokens() in common transactions.
   Journal& journal() { return journal_; }
   CheckpointStore& checkpoints() { return checkpoints_; }
+  RecentStates& recent_states() { return recent_states_; }
   SavedStates& states() { return states_; }
   SavedScenes& scenes() { return scenes_; }
   TokenStore& tokens() { return tokens_; }
@@ -53,11 +55,16 @@ class Storage {
   StorageCounts counts() const;
   /// Counts a failed write.
   void count_failure() { ++failures_; }
+  /// Counts the sessions that store their logs.
+  void open_log() { ++open_logs_; }
+  void close_log() { --open_logs_; }
+  std::size_t open_logs() const { return open_logs_; }
   /// Returns whether the budget of StorageSettings::checkpoint_bytes_per_second admits a checkpoint
   /// now. The budget may be saved for a minute.
   bool admits_checkpoint();
   /// Counts a checkpoint, its processor time and its size, which the budget is charged with.
   void count_checkpoint(std::chrono::duration<double> cost, std::size_t bytes);
+  void count_recent_state() { ++recent_states_written_; }
 
  private:
   void run(const std::function<void()>& task);
@@ -69,14 +76,17 @@ class Storage {
   const Clock& clock_;
   SessionStore sessions_;
   CheckpointStore checkpoints_;
+  RecentStates recent_states_;
   SavedStates states_;
   SavedScenes scenes_;
   TokenStore tokens_;
   Journal journal_;
+  std::atomic<std::size_t> open_logs_ = 0;
   std::atomic<std::uint64_t> failures_ = 0;
   std::atomic<std::uint64_t> checkpoints_written_ = 0;
   std::atomic<std::uint64_t> checkpoint_nanoseconds_ = 0;
   std::atomic<std::uint64_t> checkpoint_bytes_ = 0;
+  std::atomic<std::uint64_t> recent_states_written_ = 0;
   std::mutex budget_mutex_;
   TokenBucket checkpoint_budget_;
   boost::asio::thread_pool thread_{1};

@@ -13,6 +13,7 @@ struct StorageCounts {
   std::uint64_t failures = 0;  ///< failed writes
   std::uint64_t checkpoints = 0;
   std::uint64_t checkpoint_bytes = 0;
+  std::uint64_t recent_states = 0;
   std::chrono::duration<double> checkpoint_time{};  ///< processor time
   std::uint64_t journal_writes = 0;                 ///< completed writes of the journal
   std::uint64_t journal_commits = 0;                ///< transactions that contain these writes

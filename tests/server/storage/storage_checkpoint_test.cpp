@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "server/history/recorder.h"
@@ -228,7 +229,8 @@ struct Course {
 };
 
 /// Simulates a session with ticks of `tick` for `length`. A checkpoint takes `cost`.
-Course follow(CheckpointPace pace, Seconds tick, Seconds cost, Seconds length) {
+Course follow(CheckpointPace pace, Seconds tick, Seconds cost, Seconds length,
+              std::size_t sessions = 1) {
   Course course;
   Seconds since{0};
   Seconds spent{0};
@@ -236,7 +238,7 @@ Course follow(CheckpointPace pace, Seconds tick, Seconds cost, Seconds length) {
     pace.add_work(tick);
     since += tick;
     course.longest = std::max(course.longest, since);
-    if (!pace.is_due(cost)) continue;
+    if (!pace.is_due(cost, sessions)) continue;
     pace.begin();
     spent += cost;
     since = Seconds(0);
@@ -249,6 +251,13 @@ TEST(CheckpointPace, CheapOnesComeAsOftenAsIsWanted) {
   const Course course =
       follow(CheckpointPace(Seconds(0.15)), Seconds(0.004), Seconds(0.001), Seconds(100));
   EXPECT_LE(course.longest.count(), 0.15 + 0.004);
+  EXPECT_LE(course.share, CheckpointPace::kMaxShare);
+}
+
+TEST(CheckpointPace, SessionsShareTheWorkOfARecovery) {
+  const Course course =
+      follow(CheckpointPace(Seconds(4)), Seconds(0.004), Seconds(0.001), Seconds(100), 20);
+  EXPECT_LE(course.longest.count(), 4.0 / 20 + 0.004);
   EXPECT_LE(course.share, CheckpointPace::kMaxShare);
 }
 
@@ -293,14 +302,14 @@ class BoundedLog : public testing::Test {
     }
     storage.flush();
   }
-  void keep(SessionLog& log, std::uint64_t loaded) {
+  void keep(SessionLog& log, std::uint64_t loaded, bool always = true) {
     log.store({.position = 5,
                .tick = 5,
                .sequence = log.last(),
                .loaded = loaded,
                .participants = write_participants({}),
                .snapshot = simulation.snapshot()},
-              clock.now(), true);
+              clock.now(), always);
     storage.flush();
   }
   std::vector<std::uint64_t> sequences() {
@@ -316,24 +325,26 @@ class BoundedLog : public testing::Test {
   std::uint64_t number = 0;
 };
 
-// The budget of a minute is 10.8 MB by default. The clock stands still.
+// The budget of a minute is 9 MB by default. The clock stands still at first.
 TEST_F(BoundedLog, CheckpointsStayWithinTheirBytesPerSecond) {
   SessionLog log(storage, number, {1, 0});
-  const auto is_due = [&] {
+  const auto store = [&] {
     log.add_work(Seconds(5));
-    return log.is_due(5, 1, clock.now());
+    EXPECT_TRUE(log.is_due(6, 1, clock.now()));
+    keep(log, 1, false);
+    return std::pair(storage.counts().checkpoints, storage.counts().recent_states);
   };
-  EXPECT_TRUE(is_due());
-  storage.count_checkpoint(Seconds(0), 10'800'000);
-  EXPECT_TRUE(is_due()) << "the budget is used, and not exceeded";
-  storage.count_checkpoint(Seconds(0), 1'000'000);
-  keep(log, 1);
-  EXPECT_FALSE(is_due());
-  clock.advance(std::chrono::milliseconds(990));  // progress is due after a second
-  EXPECT_FALSE(is_due());
-  clock.advance(std::chrono::seconds(5));
-  keep(log, 1);
-  EXPECT_TRUE(is_due());
+  using Counts = std::pair<std::uint64_t, std::uint64_t>;
+  EXPECT_EQ(store(), Counts(1, 0));
+  storage.count_checkpoint({}, 8'990'000);
+  EXPECT_EQ(store(), Counts(3, 0)) << "the budget is used, and not exceeded";
+  storage.count_checkpoint({}, 1'000'000);
+  EXPECT_EQ(store(), Counts(4, 1));
+  EXPECT_EQ(storage.recent_states().read(number).value().position, 5U);
+  clock.advance(std::chrono::seconds(4));
+  EXPECT_EQ(store(), Counts(4, 2));
+  clock.advance(std::chrono::seconds(3));
+  EXPECT_EQ(store(), Counts(5, 2));
 }
 
 TEST_F(BoundedLog, UpToItsLimitNothingIsForgotten) {
