@@ -29,11 +29,11 @@ class Scratch {
   const Buffers& of() const {
     return *static_cast<const Buffers*>(buffers_[static_cast<std::size_t>(Buffers::kMethod)]);
   }
+  Scratch& operator=(const Scratch&) = delete;
 
  protected:
   Scratch() = default;
   Scratch(const Scratch&) = default;
-  Scratch& operator=(const Scratch&) = delete;
   ~Scratch() = default;
 
   template <class Buffers>

@@ -8,7 +8,9 @@
 #include "tests/bench/compare.h"
 #include "tests/bench/document/document.h"
 #include "tests/bench/durability/durability.h"
+#include "tests/bench/durability/recovery.h"
 #include "tests/bench/fanout/fanout.h"
+#include "tests/bench/faults/faults.h"
 #include "tests/bench/instructions/instructions.h"
 #include "tests/bench/race/race.h"
 #include "tests/bench/seeks.h"
@@ -38,7 +40,9 @@ int run_command(int argc, char** argv) {
   add_fanout_command(app, exit_code);
   add_seeks_command(app, exit_code);
   add_soak_command(app, exit_code);
+  add_faults_command(app, exit_code);
   add_durability_command(app, exit_code);
+  add_recovery_command(app, exit_code);
   add_race_command(app, exit_code);
   add_document_command(app, exit_code);
   try {

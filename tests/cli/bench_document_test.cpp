@@ -219,7 +219,19 @@ TEST(BenchDocument, ReadmeHasTheMarkersOfItsTables) {
 
 TEST(BenchDocument, ReliabilityHasTheMarkerOfItsTable) {
   const std::string page = read_file(fs::path(VAT_SOURCE_DIR) / "server/RELIABILITY.md");
-  EXPECT_TRUE(fill_markers(page, {{"durability", ""}}));
+  EXPECT_TRUE(fill_markers(page, {{"durability", ""}, {"faults", ""}, {"recovery", ""}}));
+}
+
+TEST(BenchDocument, TablesOfReliabilityHaveTheFiguresOfTheirResults) {
+  const Json recovery = Json::parse(R"([{"particles": 400, "kills": 2, "ticks per second": 50,
+    "written [GB/day]": 17.25, "median recovery [s]": 1.5, "longest recovery [s]": 2.5,
+    "cpu": "C", "cores": 2}])");
+  EXPECT_THAT(to_markdown(bench::recovery_table(recovery)),
+              HasSubstr("| 400 | 2 | 50 | 17.2 | 1.5 | 2.5 | C, 2 cores |"));
+  const Json faults = Json::parse(R"([{"measure": "lost commands", "value": 0, "bound": "0",
+    "cpu": "C", "cores": 2}])");
+  EXPECT_THAT(to_markdown(bench::faults_table(faults)),
+              HasSubstr("| lost commands | 0 | 0 | C, 2 cores |"));
 }
 
 TEST(BenchDocument, MissingResultChangesNothing) {

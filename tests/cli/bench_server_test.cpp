@@ -6,6 +6,7 @@
 #include "protocol/frame/frame_codec.h"
 #include "tests/bench/fanout/frame_facts.h"
 #include "tests/bench/fanout/segments.h"
+#include "tests/bench/faults/log_causes.h"
 #include "tests/bench/soak/trend.h"
 #include "tests/cli/program.h"
 #include "tests/cli/readers.h"
@@ -104,6 +105,47 @@ TEST(BenchDurability, MeasuresEachDurability) {
     EXPECT_LE(table.number(row, "median reply [ms]"), table.number(row, "99 % reply [ms]"));
     EXPECT_LE(table.number(row, "median lateness [ms]"), table.number(row, "99 % lateness [ms]"));
   }
+}
+
+TEST(BenchRecovery, KillsAServerAndMeasuresItsRecovery) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      run_bench({"recovery", "--particles", "400", "--kills", "1", "--warm-up", "0", "--seconds",
+                 "1", "--output", folder.path().string()});
+  ASSERT_EQ(result.exit_code, 0) << result.out << result.err;
+  const Table table = read_csv((folder.path() / "recovery.csv").string());
+  ASSERT_EQ(table.rows.size(), 1U);
+  EXPECT_EQ(table.number(0, "kills"), 1);
+  EXPECT_GT(table.number(0, "ticks per second"), 0);
+  EXPECT_GT(table.number(0, "longest recovery [s]"), 0);
+  EXPECT_LE(table.number(0, "median recovery [s]"), table.number(0, "longest recovery [s]"));
+}
+
+// A short version. The bounds of the tick rate and of the memory need the complete one.
+TEST(BenchFaults, InjectsEachFaultAndLosesNothing) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      run_bench({"faults", "--seconds", "20", "--kill-every", "6", "--sessions", "3", "--clients",
+                 "24", "--output", folder.path().string()});
+  const Table table = read_csv((folder.path() / "faults.csv").string());
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    const std::string measure = table.text(row, "measure");
+    if (measure.find("tick rate") == std::string::npos &&
+        measure.find("memory after") == std::string::npos) {
+      EXPECT_EQ(table.text(row, "passed"), "true") << measure << '\n' << result.out << result.err;
+    }
+    if (measure == "kills") EXPECT_GE(table.number(row, "value"), 2);
+  }
+  EXPECT_GT(table.rows.size(), 10U) << result.out << result.err;
+}
+
+TEST(BenchFaults, ReportsLogLinesWithoutAKnownCause) {
+  const bench::LoggedCauses causes = bench::find_causes(
+      "[2026-01-01 00:00:00.000] [vat] [warning] a wrong token, number 1 of its connection\n"
+      "[2026-01-01 00:00:00.000] [vat] [error] storage: the disk is gone\n");
+  EXPECT_EQ(causes.counts.size(), 1U);
+  ASSERT_EQ(causes.unexplained.size(), 1U);
+  EXPECT_THAT(causes.unexplained[0], testing::HasSubstr("the disk is gone"));
 }
 
 // The growth of a line is exact. For other values it is a least-squares fit: at the positions -1.5,

@@ -52,9 +52,9 @@ Result<Api> find_functions() {
 }  // namespace
 
 Result<const Api*> load_api() {
-  static const Result<Api> loaded = find_functions();
-  if (!loaded) return loaded.errors();
-  return &loaded.value();
+  static const Result<Api> kLoaded = find_functions();
+  if (!kLoaded) return kLoaded.errors();
+  return &kLoaded.value();
 }
 
 }  // namespace vat::opencl

@@ -89,7 +89,7 @@ class Program {
   cl_kernel find_kernel(const char* name);
   void set_argument(const char* name, cl_kernel kernel, cl_uint index, const Buffer& buffer) {
     cl_mem memory = buffer.memory();
-    set_bytes(name, kernel, index, sizeof memory, &memory);
+    set_bytes(name, kernel, index, sizeof(cl_mem), &memory);
   }
   template <class T>
   void set_argument(const char* name, cl_kernel kernel, cl_uint index, const T& value) {

@@ -17,7 +17,7 @@ struct StorageSettings {
   std::size_t log_bytes = std::size_t{64} << 20;  ///< [bytes]; the oldest commands are removed
   /// Computing time of all sessions between their states in storage, if the cost permits. Limits the
   /// work that a recovery of the server repeats.
-  std::chrono::milliseconds checkpoint_after{4000};
+  std::chrono::milliseconds checkpoint_after{2000};
 };
 
 }  // namespace vat

@@ -69,7 +69,9 @@ constexpr Content kContents[] = {
     {"steps", "accuracy", "control", steps_table},
     {"counts", "stability", "stability", counts_table},
     {"race", "race", "race", race_table},
-    {"durability", "durability", "durability", durability_table}};
+    {"durability", "durability", "durability", durability_table},
+    {"recovery", "recovery", "recovery", recovery_table},
+    {"faults", "faults", "faults", faults_table}};
 
 /// Returns the contents of the markers that the page has.
 Result<std::map<std::string, std::string>> make_contents(const std::string& page,

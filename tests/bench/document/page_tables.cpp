@@ -238,4 +238,29 @@ Table durability_table(const Json& durability) {
   return table;
 }
 
+Table recovery_table(const Json& recovery) {
+  constexpr const char* kFigures[] = {"ticks per second", "written [GB/day]", "median recovery [s]",
+                                      "longest recovery [s]"};
+  Table table{{"particles", "kills"}, {}};
+  table.columns.insert(table.columns.end(), std::begin(kFigures), std::end(kFigures));
+  table.columns.emplace_back("machine");
+  for (const Json& row : recovery) {
+    std::vector<Cell> cells{row.at("particles").get<std::uint64_t>(),
+                            row.at("kills").get<std::uint64_t>()};
+    for (const char* column : kFigures) cells.emplace_back(cell_number(row, column));
+    cells.emplace_back(machine_cell(row));
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
+Table faults_table(const Json& faults) {
+  Table table{{"measure", "value", "bound", "machine"}, {}};
+  for (const Json& row : faults) {
+    table.rows.push_back({cell_text(row, "measure"), row.at("value").get<Real>(),
+                          cell_text(row, "bound"), machine_cell(row)});
+  }
+  return table;
+}
+
 }  // namespace vat::bench

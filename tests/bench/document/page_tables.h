@@ -44,5 +44,7 @@ Table race_table(const Json& race);
 
 /// Returns all columns except the commit, with the machine in one column.
 Table durability_table(const Json& durability);
+Table recovery_table(const Json& recovery);
+Table faults_table(const Json& faults);
 
 }  // namespace vat::bench
