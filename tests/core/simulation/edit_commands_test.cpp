@@ -209,6 +209,26 @@ TEST_F(SetMaterial, ANewOneIsThereForBodies) {
   simulation.advance(10);
 }
 
+TEST_F(SetMaterial, AnAppearanceLeavesTheStateUnchanged) {
+  simulation.advance(50);
+  const std::uint64_t before = simulation.state_hash();
+  Simulation other = Simulation::from(simulation.snapshot());
+  Material painted = material("jelly");
+  painted.appearance.colour = Colour{1, 2, 3};
+  painted.appearance.roughness = 0.25;
+  ASSERT_TRUE(simulation.set_material(painted).ok());
+  EXPECT_EQ(simulation.scene().materials[1], painted);
+  EXPECT_EQ(simulation.state_hash(), before);
+  simulation.advance(20);
+  other.advance(20);
+  EXPECT_EQ(simulation.state_hash(), other.state_hash());
+  expect_goes_on(simulation, 2);
+  const auto loaded = Simulation::load(simulation.snapshot().to_bytes());
+  EXPECT_EQ(loaded.value().scene().materials[1], painted);
+  painted.appearance.opacity = 1.5;
+  EXPECT_EQ(error(painted), "out_of_range /material/appearance/opacity\n");
+}
+
 TEST_F(SetMaterial, GoesOnFromItsBytesWithTheSameBits) {
   simulation.advance(60);
   Material water = material("water");
