@@ -6,6 +6,7 @@ import type {
   SwitchName,
   ViewSettings,
 } from '../view/base/settings';
+import { quantityOf } from '../view/colour/quantity';
 import type { View } from '../view/view';
 import { ColourLegend } from './colour_legend';
 import { element, make } from './elements';
@@ -24,6 +25,7 @@ const kWords: Words = {
   },
   solids: { particles: 'particles', skin: 'smooth skin', both: 'both' },
   colour: {
+    material: 'by material',
     body: 'by body',
     kind: 'by kind',
     speed: 'by speed',
@@ -48,8 +50,7 @@ export class ViewOptions {
   private readonly delay = make('p', kHidden);
 
   constructor(private readonly view: View) {
-    const isOfNumbers = ({ colour }: ViewSettings): boolean =>
-      colour !== 'body' && colour !== 'kind';
+    const isOfNumbers = ({ colour }: ViewSettings): boolean => quantityOf(colour) !== undefined;
     const isClipped = ({ clip }: ViewSettings): boolean => clip !== 'off';
     this.section.append(
       this.choice('liquid', 'Liquid'),

@@ -11,7 +11,7 @@ export const kChoices = {
   liquid: ['auto', 'fluid', 'surface', 'splats', 'particles'],
   /** Style of deformable and rigid bodies. */
   solids: ['particles', 'skin', 'both'],
-  colour: ['body', 'kind', 'speed', 'density', 'pressure', 'force'],
+  colour: ['material', 'body', 'kind', 'speed', 'density', 'pressure', 'force'],
   map: ['viridis', 'cividis', 'turbo', 'blue-red'],
   /** The axis of the clip plane at `clipAt`. */
   clip: ['off', 'x', 'y', 'z'],

@@ -2,6 +2,7 @@ import { Group, Matrix4, Mesh, Vector3 } from 'three';
 import type { Box3, Ray, ShaderMaterial } from 'three';
 import { BodyKind } from '../../../client/index';
 import type { BodyDescription, FrameHeader, GridBlock, PoseBlock } from '../../../client/index';
+import type { Look } from '../base/appearance';
 import { nearestSphere } from '../base/pick';
 import type { Hit } from '../base/pick';
 import { kNoValue } from '../colour/maps';
@@ -28,15 +29,11 @@ import { splatDepthMaterial, splatMaterial } from '../particles/splat_material';
 /** Draw order: shadows on the floor, then solids. Liquids draw the depth before the splats. */
 const kOrder = { shadow: 1, solid: 2, splatDepth: 1, splat: 2, skin: 3 };
 
-/** Skins. If particles are shown too, skins are transparent and enclose the spheres. */
-const kSkins = {
-  liquid: { wet: 1, opacity: 0.82, size: 1.5 },
-  deformable: { wet: 0.15, opacity: 1, size: 1.2 },
-  rigid: { wet: 0.35, opacity: 1, size: 1.2 },
-};
+/** Sizes of skins; see SurfaceJob. If particles are shown too, skins enclose the spheres. */
+const kSkinSizes = { liquid: 1.5, deformable: 1.2, rigid: 1.2 };
+/** The opacity of the surface of a perfectly clear liquid. */
+const kLeastOpacity = 0.6;
 const kVeil = { opacity: 0.4, size: 1.7 };
-
-const kGloss = { liquid: 0.6, deformable: 0.1, rigid: 0.35 };
 
 /**
  * The particles of one body. The group's matrix converts their coordinates to world axes: quanta for
@@ -52,17 +49,20 @@ export class BodyView {
   private readonly materials: ShaderMaterial[] = [];
   /** The meshes of a liquid, with their styles. */
   private readonly styles: { mesh: Mesh; style: LiquidStyle }[] = [];
-  private colouring: Choice<'colour'> = 'body';
+  private colouring: Choice<'colour'> = 'material';
   private readonly spheres: Mesh;
   private readonly skin: Skin;
   private values: Float32Array | undefined;
   private hasSkin = false;
+  /** Whether the skin is transparent, so that particles are visible. */
+  private isVeiled = false;
   /** See SurfaceJob. */
   private skinSize: number;
 
   constructor(
     readonly description: BodyDescription,
     private readonly nthOfKind: number,
+    private appearance: Look,
     private readonly shared: SharedUniforms,
     workshop: Workshop,
     onChange: () => void,
@@ -74,13 +74,29 @@ export class BodyView {
     this.group.matrixAutoUpdate = false;
     this.group.visible = false; // until the first frame
     this.add(shadowMaterial(radius, shared.floor, this.uniforms), kOrder.shadow);
-    const gloss = sphereMaterial(this.uniforms, radius, kGloss[kind]);
-    this.spheres = this.add(gloss, kOrder.solid);
-    this.skin = new Skin(workshop, this.uniforms, kSkins[kind], onChange);
-    this.skinSize = kSkins[kind].size;
+    this.spheres = this.add(sphereMaterial(this.uniforms, radius), kOrder.solid);
+    this.skin = new Skin(workshop, this.uniforms, onChange);
+    this.skinSize = kSkinSizes[kind];
     this.skin.mesh.renderOrder = kOrder.skin;
     this.group.add(this.skin.mesh);
     if (kind === 'liquid') this.addLiquid();
+    this.look = appearance;
+  }
+
+  /** Sets the appearance of the material. */
+  set look(look: Look) {
+    this.appearance = look;
+    const { uniforms } = this;
+    uniforms.roughness.value = look.roughness;
+    uniforms.metalness.value = look.metalness;
+    uniforms.finish.value = look.finish;
+    if (uniforms.colour_source.value === kColourSource.body) this.showColour(kColourSource.body);
+    this.showOpacity();
+  }
+
+  /** Of a liquid: its absorption relative to the reference of the scene. */
+  set density(density: number) {
+    this.uniforms.density.value = density;
   }
 
   get count(): number {
@@ -240,11 +256,18 @@ export class BodyView {
     if (kind === 'liquid') return;
     this.spheres.visible = chosen !== 'skin';
     this.skin.mesh.visible = chosen !== 'particles';
-    const veil = chosen === 'both' ? kVeil : kSkins[kind];
-    this.skin.opacity = veil.opacity;
-    this.skinSize = veil.size;
+    this.isVeiled = chosen === 'both';
+    this.showOpacity();
+    this.skinSize = this.isVeiled ? kVeil.size : kSkinSizes[kind];
     this.hasSkin = false;
     this.updateSkin();
+  }
+
+  private showOpacity(): void {
+    const { opacity } = this.appearance;
+    const isLiquid = this.description.kind === 'liquid';
+    const shown = isLiquid ? kLeastOpacity + (1 - kLeastOpacity) * opacity : opacity;
+    this.skin.opacity = this.isVeiled ? kVeil.opacity : shown;
   }
 
   /** Updates the skin. A rigid body's skin moves with it; others are made anew. */
@@ -262,8 +285,10 @@ export class BodyView {
     const { kind } = this.description;
     this.uniforms.colour_source.value = source;
     const isOfNumbers = quantityOf(this.colouring) !== undefined;
-    const nth = this.colouring === 'kind' ? 0 : this.nthOfKind;
-    this.uniforms.colour.value.copy(isOfNumbers ? kNoValue : bodyColour(kind, nth));
+    const { value } = this.uniforms.colour;
+    if (isOfNumbers) value.copy(kNoValue);
+    else if (this.colouring === 'material') value.copy(this.appearance.colour);
+    else value.copy(bodyColour(kind, this.colouring === 'kind' ? 0 : this.nthOfKind));
   }
 
   private addLiquid(): void {
