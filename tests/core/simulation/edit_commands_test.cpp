@@ -248,7 +248,7 @@ TEST_F(SetMaterial, AnAppearanceLeavesTheStateUnchanged) {
   const auto loaded = Simulation::load(simulation.snapshot().to_bytes());
   EXPECT_EQ(loaded.value().scene().materials[1], painted);
   painted.appearance.opacity = 1.5;
-  EXPECT_EQ(error(painted), "out_of_range /material/appearance/opacity\n");
+  EXPECT_EQ(error(painted), "out_of_range /material/appearance/opacity");
 }
 
 TEST_F(SetMaterial, GoesOnFromItsBytesWithTheSameBits) {

@@ -23,7 +23,12 @@ const kWords: Words = {
     splats: 'soft splats',
     particles: 'particles',
   },
-  solids: { particles: 'particles', skin: 'smooth skin', both: 'both' },
+  solids: {
+    shape: 'surface',
+    skin: 'skin around particles',
+    particles: 'particles',
+    both: 'skin and particles',
+  },
   colour: {
     material: 'by material',
     body: 'by body',

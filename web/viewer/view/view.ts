@@ -55,6 +55,15 @@ export class View {
     this.paint();
     watchTheme(() => this.paint());
     this.settings.subscribe(() => this.apply());
+    void this.loadSolids();
+  }
+
+  /** Loads the part that draws solids by their shapes. */
+  private async loadSolids(): Promise<void> {
+    const { solidOf } = await import('./solids/solid_of');
+    this.world.solidMaker = solidOf;
+    this.stage.canvas.dataset.solids = 'shapes';
+    this.stage.invalidate();
   }
 
   describe(description: SessionDescription): void {

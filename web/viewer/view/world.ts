@@ -24,6 +24,7 @@ import { Marks } from './marks/marks';
 import type { LiquidStyle } from './base/liquid_style';
 import type { Choice } from './base/settings';
 import type { SharedUniforms } from './bodies/shared_uniforms';
+import type { SolidMaker } from './solids/solid_of';
 import { Workshop } from './surface/workshop';
 import { VatView } from './vat_view';
 
@@ -55,9 +56,10 @@ export class World {
   /** The union of the vat's positions or, without a vat, the initial extent of the bodies. */
   private seen = new Box3();
   private style: LiquidStyle = 'splats';
-  private solids: Choice<'solids'> = 'particles';
+  private solids: Choice<'solids'> = 'shape';
   private colouring: Choice<'colour'> = 'material';
   private readonly workshop = new Workshop();
+  private makeSolid: SolidMaker | undefined;
   /** Called after changes between frames. */
   onChange: () => void = () => undefined;
   /** Time of the last frame [s]. */
@@ -72,6 +74,12 @@ export class World {
     this.ground = new Ground(look);
     this.group.add(this.ground.mesh, this.marks.group);
     this.paint(look);
+  }
+
+  /** Draws solids by their shapes from now on. */
+  set solidMaker(make: SolidMaker) {
+    this.makeSolid = make;
+    for (const view of this.bodies.values()) view.addSolid(make);
   }
 
   /** Shows a description. Bodies of the same scene remain visible until the next frame. */
@@ -108,15 +116,20 @@ export class World {
   /** Returns the existing view if it can show the body. */
   private viewOf(body: BodyDescription, nth: number, old: BodyView | undefined): BodyView {
     const look = this.lookOf(body);
+    const { tearing_strain: tearingStrain } =
+      this.description!.materials.find(({ name }) => name === body.material) ?? {};
     if (old?.isOf(body, nth)) {
       old.rest();
       old.look = look;
+      old.tearingStrain = tearingStrain;
       return old;
     }
     const view = new BodyView(body, nth, look, this.shared, this.workshop, () => this.onChange());
+    view.tearingStrain = tearingStrain;
     view.liquidStyle = this.style;
     view.colour = this.colouring;
     view.solidStyle = this.solids;
+    if (this.makeSolid) view.addSolid(this.makeSolid);
     this.group.add(view.group);
     return view;
   }

@@ -20,6 +20,8 @@ import { ParticleColumns } from '../particles/particle_columns';
 import { RigidMotion } from '../particles/rigid_motion';
 import type { Choice } from '../base/settings';
 import { shadowMaterial } from '../particles/shadow_material';
+import type { SolidSurface } from '../solids/solid';
+import type { SolidMaker } from '../solids/solid_of';
 import type { SharedUniforms } from './shared_uniforms';
 import { sphereMaterial } from '../particles/sphere_material';
 import { Skin } from '../surface/skin';
@@ -33,6 +35,8 @@ const kOrder = { shadow: 1, solid: 2, splatDepth: 1, splat: 2, skin: 3 };
 const kSkinSizes = { liquid: 1.5, deformable: 1.2, rigid: 1.2 };
 /** The opacity of the surface of a perfectly clear liquid. */
 const kLeastOpacity = 0.6;
+/** Distributes the variants of bodies evenly. */
+const kGoldenRatio = 0.618034;
 const kVeil = { opacity: 0.4, size: 1.7 };
 
 /**
@@ -52,7 +56,14 @@ export class BodyView {
   private colouring: Choice<'colour'> = 'material';
   private readonly spheres: Mesh;
   private readonly skin: Skin;
+  /** The surface of a solid with a known shape. */
+  private solid: SolidSurface | undefined;
+  private solidStyleNow: Choice<'solids'> = 'shape';
+  /** The strain at which links of a deformable body tear; undefined: they do not. */
+  tearingStrain: number | undefined;
   private values: Float32Array | undefined;
+  /** Simulated time of the newest frame [s]. */
+  private time = 0;
   private hasSkin = false;
   /** Whether the skin is transparent, so that particles are visible. */
   private isVeiled = false;
@@ -80,6 +91,7 @@ export class BodyView {
     this.skin.mesh.renderOrder = kOrder.skin;
     this.group.add(this.skin.mesh);
     if (kind === 'liquid') this.addLiquid();
+    this.uniforms.variant.value = (nthOfKind * kGoldenRatio) % 1;
     this.look = appearance;
   }
 
@@ -110,14 +122,26 @@ export class BodyView {
     return isSame && radius === description.radius && nthOfKind === this.nthOfKind;
   }
 
+  /** Adds the surface of a solid. Until then, its particles are visible. */
+  addSolid(make: SolidMaker): void {
+    if (this.solid) return;
+    const solid = make(this.description, this.uniforms, this.shared.floor);
+    if (!solid) return;
+    this.solid = solid;
+    solid.mesh.renderOrder = kOrder.solid;
+    this.group.add(solid.mesh);
+    this.solidStyle = this.solidStyleNow;
+  }
+
   /** Ends the interpolation: the next frame does not continue the motion. */
   rest(): void {
+    this.solid?.rest?.();
     this.columns.rest();
     this.motion?.rest();
   }
 
   /** Shows particles. See ParticleColumns.show() for the lifetime of the block. */
-  showGrid(block: GridBlock, { origin, quantum, attributeQuanta }: FrameHeader): void {
+  showGrid(block: GridBlock, { origin, quantum, attributeQuanta, time }: FrameHeader): void {
     this.columns.show(block, { origin, quantum });
     const name = quantityOf(this.colouring);
     const column = name && kQuantities[name].column;
@@ -127,12 +151,14 @@ export class BodyView {
       this.uniforms.value_quantum.value = attributeQuanta[column]!;
     }
     const scale = this.uniforms.value_quantum.value;
-    const isSkinned = this.skin.mesh.visible;
-    this.values = isSkinned && values ? Float32Array.from(values, (v) => v * scale) : undefined;
+    const hasSurface = this.skin.mesh.visible || this.solid?.mesh.visible === true;
+    this.values = hasSurface && values ? Float32Array.from(values, (v) => v * scale) : undefined;
     this.showColour(values ? kColourSource.column : kColourSource.body);
     this.group.matrix.makeScale(quantum, quantum, quantum).setPosition(...origin);
     this.shown();
+    this.time = time;
     this.updateSkin();
+    this.updateSolid();
   }
 
   /** Shows a pose, `seconds` after the previous one. */
@@ -241,6 +267,7 @@ export class BodyView {
     this.group.removeFromParent();
     this.columns.dispose();
     this.skin.dispose();
+    this.solid?.dispose();
     for (const material of this.materials) material.dispose();
   }
 
@@ -254,8 +281,13 @@ export class BodyView {
   set solidStyle(chosen: Choice<'solids'>) {
     const { kind } = this.description;
     if (kind === 'liquid') return;
-    this.spheres.visible = chosen !== 'skin';
-    this.skin.mesh.visible = chosen !== 'particles';
+    this.solidStyleNow = chosen;
+    const hasShape = chosen === 'shape' && this.solid !== undefined;
+    this.spheres.visible = chosen !== 'skin' && !hasShape;
+    this.skin.mesh.visible = chosen === 'skin' || chosen === 'both';
+    if (this.solid) this.solid.mesh.visible = hasShape;
+    this.solid?.rest?.();
+    this.updateSolid();
     this.isVeiled = chosen === 'both';
     this.showOpacity();
     this.skinSize = this.isVeiled ? kVeil.size : kSkinSizes[kind];
@@ -267,6 +299,7 @@ export class BodyView {
     const { opacity } = this.appearance;
     const isLiquid = this.description.kind === 'liquid';
     const shown = isLiquid ? kLeastOpacity + (1 - kLeastOpacity) * opacity : opacity;
+    if (this.solid) this.solid.opacity = opacity;
     this.skin.opacity = this.isVeiled ? kVeil.opacity : shown;
   }
 
@@ -278,6 +311,14 @@ export class BodyView {
     const radius = this.description.radius / this.group.matrix.getMaxScaleOnAxis();
     const places = this.columns.newestPlaces();
     this.skin.follow({ places, radius, values: this.values, size: this.skinSize });
+  }
+
+  /** Moves the surface of a deformable body to the newest particles. */
+  private updateSolid(): void {
+    if (!this.solid?.mesh.visible || !this.group.visible) return;
+    const { columns, time, tearingStrain, values } = this;
+    const quantum = this.group.matrix.getMaxScaleOnAxis();
+    this.solid.follow?.({ columns, quantum, time, tearingStrain, values });
   }
 
   /** Sets the source of colours. Particles without a value are grey. */
