@@ -7,6 +7,9 @@ import { Lattice } from './lattice';
 import { Solid, withRest } from './solid';
 import type { ShownParticles, SolidSurface } from './solid';
 
+/** Pause between two surfaces of a tearing body / time to make one. */
+const kPause = 4;
+
 /** A deformable body at rest: its particles in the axes of its shape. */
 export interface RestBody {
   shape: SceneShape;
@@ -22,6 +25,10 @@ export class BoundSolid extends Solid implements SolidSurface {
   /** The quantum of the vertices, while the next frame continues the motion. */
   private quantum: number | undefined;
   private time = -Infinity;
+  /** Whether links have torn since the surface was made. */
+  private isStale = false;
+  /** The time from which the surface may be made anew [ms]. */
+  private nextRebuild = 0;
 
   constructor(
     private readonly body: RestBody,
@@ -45,7 +52,12 @@ export class BoundSolid extends Solid implements SolidSurface {
     this.time = time;
     const isTorn =
       tearingStrain !== undefined && this.lattice.tear(places, (1 + tearingStrain) * unit);
-    if (isMended || isTorn) this.rebuild();
+    this.isStale ||= isTorn;
+    const now = performance.now();
+    if (isMended || (this.isStale && now >= this.nextRebuild)) {
+      this.rebuild();
+      this.nextRebuild = now + kPause * (performance.now() - now);
+    }
     const [position, before, normal, amount] = ['position', 'before', 'normal', 'amount'].map(
       (name) => this.mesh.geometry.getAttribute(name) as BufferAttribute,
     ) as [BufferAttribute, BufferAttribute, BufferAttribute, BufferAttribute];
@@ -67,6 +79,7 @@ export class BoundSolid extends Solid implements SolidSurface {
 
   /** Makes the surface anew after links have torn. */
   private rebuild(): void {
+    this.isStale = false;
     this.surface = new BoundSurface(this.lattice, this.body.places, this.body.shape);
     this.mesh.geometry.dispose();
     this.mesh.geometry = geometryOf(this.surface, this.box);
