@@ -64,9 +64,9 @@ describe('Appearance', () => {
     world.describe(described({ colour: '#f0a01e', roughness: 0.1 }, { colour: '#4fb4e0' }));
     expect(uniformsOf(world, 'colour').map(hex)).toEqual(['#f0a01e', '#4fb4e0']);
     expect(uniformsOf(world, 'roughness')).toEqual([0.1, 0.5]);
-    world.describe(described({ colour: '#102030' }, { colour: '#4fb4e0', finish: 'steel' }));
+    world.describe(described({ colour: '#102030' }, { colour: '#4fb4e0', roughness: 0.5 }));
     expect(uniformsOf(world, 'colour').map(hex)).toEqual(['#102030', '#4fb4e0']);
-    expect(uniformsOf(world, 'finish')).toEqual([0, kFinishes.indexOf('steel')]);
+    expect(uniformsOf(world, 'roughness')).toEqual([0.5, 0.5]);
     world.colour = 'body';
     expect(uniformsOf(world, 'colour').map(hex)).not.toContain('#102030');
   });

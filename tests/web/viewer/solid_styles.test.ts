@@ -3,7 +3,7 @@ import type { Mesh } from 'three';
 import { describe, expect, it } from 'vitest';
 import { BodyKind } from '../../../web/client/index';
 import type { BodyDescription, FrameHeader, GridBlock, PoseBlock } from '../../../web/client/index';
-import { lookOf } from '../../../web/viewer/view/base/appearance';
+import { kFinishes, lookOf } from '../../../web/viewer/view/base/appearance';
 import { BodyView } from '../../../web/viewer/view/bodies/body_view';
 import { sharedUniforms } from '../../../web/viewer/view/bodies/shared_uniforms';
 import { solidOf } from '../../../web/viewer/view/solids/solid_of';
@@ -134,8 +134,20 @@ describe('The style of solids', () => {
     expect(solid!.geometry.getAttribute('position').count).toBeLessThan(torn);
   });
 
-  it('has the opacity of the material', () => {
-    const [solid] = shown(viewOf(kCrate));
-    expect(solid!.material).toMatchObject({ transparent: true });
+  it('has the opacity and the finish of the material', () => {
+    const view = viewOf(kCrate);
+    const [solid] = shown(view);
+    expect(solid!.material).toMatchObject({ transparent: true, defines: { FINISH: 0 } });
+    view.look = lookOf({ finish: 'brick' });
+    const brick = kFinishes.indexOf('brick');
+    expect(solid!.material).toMatchObject({ transparent: false, defines: { FINISH: brick } });
+  });
+
+  it('has spots as shadows only below particles', () => {
+    const view = viewOf(kCrate);
+    const [spots] = view.group.children;
+    expect(spots!.visible).toBe(false);
+    view.solidStyle = 'particles';
+    expect(spots!.visible).toBe(true);
   });
 });

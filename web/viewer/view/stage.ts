@@ -9,6 +9,7 @@ import { kLayers } from './base/layers';
 import { LiquidPass } from './liquid_pass';
 import type { LiquidStyle } from './base/liquid_style';
 import type { SharedUniforms } from './bodies/shared_uniforms';
+import type { SunShadow } from './shadow/sun_shadow';
 import { graphicsOf } from './base/graphics';
 import type { Graphics } from './base/graphics';
 import type { Theme } from './base/theme';
@@ -27,6 +28,8 @@ export class Stage {
   private readonly fluid: FluidPass;
   private style: LiquidStyle = 'splats';
   private fluidLook: FluidLook | undefined;
+  /** Draws the shadow map before each picture, if there is one. */
+  sunShadow: SunShadow | undefined;
   private stale = true;
   private drewLast = false;
   /** Called after each picture: its time [ms], and whether the previous animation frame was drawn. */
@@ -162,6 +165,7 @@ export class Stage {
 
   private drawNow(): void {
     const { renderer, scene, camera, fluidLook: look } = this;
+    this.sunShadow?.draw(renderer, scene);
     if (look && this.style === 'fluid') {
       this.fluid.draw(renderer, scene, camera, look);
       return;

@@ -54,6 +54,8 @@ export class BodyView {
   /** The meshes of a liquid, with their styles. */
   private readonly styles: { mesh: Mesh; style: LiquidStyle }[] = [];
   private colouring: Choice<'colour'> = 'material';
+  /** Soft shadows on the floor below particles. */
+  private readonly spots: Mesh;
   private readonly spheres: Mesh;
   private readonly skin: Skin;
   /** The surface of a solid with a known shape. */
@@ -84,7 +86,7 @@ export class BodyView {
     this.uniforms = bodyUniforms(bodyColour(kind, nthOfKind), shared.look, !this.motion);
     this.group.matrixAutoUpdate = false;
     this.group.visible = false; // until the first frame
-    this.add(shadowMaterial(radius, shared.floor, this.uniforms), kOrder.shadow);
+    this.spots = this.add(shadowMaterial(radius, shared.floor, this.uniforms), kOrder.shadow);
     this.spheres = this.add(sphereMaterial(this.uniforms, radius), kOrder.solid);
     this.skin = new Skin(workshop, this.uniforms, onChange);
     this.skinSize = kSkinSizes[kind];
@@ -101,7 +103,7 @@ export class BodyView {
     const { uniforms } = this;
     uniforms.roughness.value = look.roughness;
     uniforms.metalness.value = look.metalness;
-    uniforms.finish.value = look.finish;
+    if (this.solid) this.solid.finish = look.finish;
     if (uniforms.colour_source.value === kColourSource.body) this.showColour(kColourSource.body);
     this.showOpacity();
   }
@@ -125,9 +127,10 @@ export class BodyView {
   /** Adds the surface of a solid. Until then, its particles are visible. */
   addSolid(make: SolidMaker): void {
     if (this.solid) return;
-    const solid = make(this.description, this.uniforms, this.shared.floor);
+    const solid = make(this.description, this.uniforms, this.shared);
     if (!solid) return;
     this.solid = solid;
+    this.look = this.appearance;
     solid.mesh.renderOrder = kOrder.solid;
     this.group.add(solid.mesh);
     this.solidStyle = this.solidStyleNow;
@@ -284,6 +287,7 @@ export class BodyView {
     this.solidStyleNow = chosen;
     const hasShape = chosen === 'shape' && this.solid !== undefined;
     this.spheres.visible = chosen !== 'skin' && !hasShape;
+    this.spots.visible = !hasShape; // shapes are in the shadow map
     this.skin.mesh.visible = chosen === 'skin' || chosen === 'both';
     if (this.solid) this.solid.mesh.visible = hasShape;
     this.solid?.rest?.();

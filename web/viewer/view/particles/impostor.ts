@@ -16,8 +16,6 @@ export interface BodyUniforms extends LookUniforms {
   colour: IUniform<Color>;
   roughness: IUniform<number>;
   metalness: IUniform<number>;
-  /** The index in kFinishes; see Look. */
-  finish: IUniform<number>;
   /** A number that differs between bodies, 0 to 1. */
   variant: IUniform<number>;
   /** Of a liquid: absorption relative to the scene's reference; see FluidLook.clarity. */
@@ -37,7 +35,6 @@ export function bodyUniforms(colour: Color, look: LookUniforms, moves: boolean):
     colour: { value: colour.clone() },
     roughness: { value: 0.5 },
     metalness: { value: 0 },
-    finish: { value: 0 },
     variant: { value: 0 },
     density: { value: 1 },
     colour_source: { value: kColourSource.body },

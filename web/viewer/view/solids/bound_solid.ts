@@ -1,11 +1,11 @@
 import { Box3, BufferAttribute, BufferGeometry, DynamicDrawUsage } from 'three';
 import type { SceneShape } from '../../../client/index';
 import type { BodyUniforms } from '../particles/impostor';
-import type { FloorUniforms } from '../particles/shadow_material';
 import { BoundSurface, writeNormals } from './bound_surface';
 import { Lattice } from './lattice';
 import { Solid, withRest } from './solid';
 import type { ShownParticles, SolidSurface } from './solid';
+import type { Surroundings } from './solid_material';
 
 /** Pause between two surfaces of a tearing body / time to make one. */
 const kPause = 4;
@@ -33,12 +33,12 @@ export class BoundSolid extends Solid implements SolidSurface {
   constructor(
     private readonly body: RestBody,
     uniforms: BodyUniforms,
-    floor: FloorUniforms,
+    surroundings: Surroundings,
   ) {
     const lattice = new Lattice(body.places, body.spacing);
     const surface = new BoundSurface(lattice, body.places, body.shape);
     const box = new Box3().setFromArray(surface.rest);
-    super(geometryOf(surface, box), box, uniforms, floor);
+    super(geometryOf(surface, box), box, uniforms, surroundings);
     this.lattice = lattice;
     this.surface = surface;
     this.box = box;

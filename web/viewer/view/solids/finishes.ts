@@ -37,7 +37,7 @@ const kNoise = /* glsl */ `
 /**
  * The surface of a finish at a point of the body: colour factors, roughness, and a height in body
  * lengths whose slope tilts the normal. `grain` has the longest axis of the body first, and is 1
- * unit long.
+ * unit long. `FINISH` is the number of the finish.
  */
 export const kFinishShader = /* glsl */ `
   ${kNoise}
@@ -50,11 +50,11 @@ export const kFinishShader = /* glsl */ `
   Surface finish_wood(vec3 grain, Surface plain) {
     // Rings around an axis beside the body, wavy along the grain.
     vec2 heart = vec2(0.35, -0.22) + 0.3 * vec2(variant - 0.5, fract(7.0 * variant) - 0.5);
-    float wave = 0.05 * noise(vec3(2.2 * grain.x, 3.0 * grain.yz));
+    float pale = noise(vec3(2.2 * grain.x, 3.0 * grain.yz) + 9.0 * variant);
+    float wave = 0.05 * pale;
     float ring = fract(9.0 * (length(grain.yz - heart) + wave));
     float late = smoothstep(0.2, 0.8, ring) * (1.0 - smoothstep(0.8, 1.0, ring));
     float fibre = noise(vec3(7.0 * grain.x, 120.0 * grain.yz));
-    float pale = noise(vec3(1.5 * grain.x, 5.0 * grain.yz) + 9.0 * variant);
     plain.colour *= mix(vec3(1.08), vec3(0.80, 0.73, 0.66), late);
     plain.colour *= (0.9 + 0.16 * fibre) * (0.92 + 0.18 * pale);
     plain.roughness += 0.12 * late;
@@ -100,12 +100,19 @@ export const kFinishShader = /* glsl */ `
 
   Surface surface_at(vec3 grain, vec3 base) {
     Surface plain = Surface(base, roughness, 0.0);
-    if (finish == ${number('wood')}) return finish_wood(grain, plain);
-    if (finish == ${number('brick')}) return finish_brick(grain, plain);
-    if (finish == ${number('rubber')}) return finish_rubber(grain, plain);
-    if (finish == ${number('steel')}) return finish_steel(grain, plain);
-    if (finish == ${number('clay')}) return finish_clay(grain, plain);
+  #if FINISH == ${number('wood')}
+    return finish_wood(grain, plain);
+  #elif FINISH == ${number('brick')}
+    return finish_brick(grain, plain);
+  #elif FINISH == ${number('rubber')}
+    return finish_rubber(grain, plain);
+  #elif FINISH == ${number('steel')}
+    return finish_steel(grain, plain);
+  #elif FINISH == ${number('clay')}
+    return finish_clay(grain, plain);
+  #else
     return plain;
+  #endif
   }
 
   /** Tilts a normal by the slope of a height [m] on the screen (M. Mikkelsen, 2010). */

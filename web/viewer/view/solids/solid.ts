@@ -1,9 +1,10 @@
 import { BufferAttribute, DoubleSide, FrontSide, Mesh, Vector3 } from 'three';
 import type { Box3, BufferGeometry, ShaderMaterial } from 'three';
+import { kLayers } from '../base/layers';
 import type { BodyUniforms } from '../particles/impostor';
 import type { ParticleColumns } from '../particles/particle_columns';
-import type { FloorUniforms } from '../particles/shadow_material';
 import { solidMaterial } from './solid_material';
+import type { Surroundings } from './solid_material';
 
 /** The particles of a frame, for a surface that follows them. */
 export interface ShownParticles {
@@ -23,6 +24,8 @@ export interface SolidSurface {
   readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;
   /** 0: transparent, 1: opaque. */
   opacity: number;
+  /** The index in kFinishes. */
+  finish: number;
   /** Follows the particles of a frame. */
   follow?(particles: ShownParticles): void;
   /** Ends the interpolation: the next frame does not continue the motion. */
@@ -35,18 +38,38 @@ export class Solid implements SolidSurface {
   readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;
 
   /** `box` is the extent of the surface at rest. See withRest() for the geometry. */
-  constructor(geometry: BufferGeometry, box: Box3, uniforms: BodyUniforms, floor: FloorUniforms) {
-    this.mesh = new Mesh(geometry, solidMaterial(uniforms, floor, box));
+  constructor(
+    geometry: BufferGeometry,
+    box: Box3,
+    uniforms: BodyUniforms,
+    surroundings: Surroundings,
+  ) {
+    this.mesh = new Mesh(geometry, solidMaterial(uniforms, surroundings, box));
     this.mesh.frustumCulled = false;
     this.mesh.visible = false;
+    this.mesh.layers.enable(kLayers.casters);
   }
 
-  /** Sets the opacity: 0 transparent, 1 opaque. */
+  get opacity(): number {
+    return this.mesh.material.uniforms.opacity!.value as number;
+  }
+
   set opacity(opacity: number) {
     const { material } = this.mesh;
     material.uniforms.opacity!.value = opacity;
     material.transparent = opacity < 1;
     material.side = opacity < 1 ? FrontSide : DoubleSide; // a cut shows the inside
+  }
+
+  get finish(): number {
+    return this.mesh.material.defines.FINISH as number;
+  }
+
+  set finish(finish: number) {
+    const { material } = this.mesh;
+    if (finish === this.finish) return;
+    material.defines.FINISH = finish;
+    material.needsUpdate = true;
   }
 
   dispose(): void {

@@ -1,6 +1,8 @@
 import { DoubleSide, Matrix3, ShaderMaterial } from 'three';
 import type { Box3 } from 'three';
 import { kEnvironment } from '../base/environment';
+import { kSunlight } from '../base/sun_uniforms';
+import type { SunUniforms } from '../base/sun_uniforms';
 import { kColourSource } from '../particles/impostor';
 import type { BodyUniforms } from '../particles/impostor';
 import type { FloorUniforms } from '../particles/shadow_material';
@@ -54,9 +56,9 @@ const kFragmentShader = /* glsl */ `
   uniform float variant;
   uniform float body_length;
   uniform float floor_z;
-  uniform int finish;
   ${kFinishShader}
   ${kEnvironment}
+  ${kSunlight}
 
   void main() {
     if (dot(clip_plane.xyz, world_point) > clip_plane.w) discard;
@@ -65,13 +67,14 @@ const kFragmentShader = /* glsl */ `
     // Colours of quantities have no pattern.
     if (colour_source == ${kColourSource.body}) here = surface_at(grain, base);
     vec3 n = normalize(outward) * facing;
+    float shade = sunlight(world_point, n);
     n = tilted(n, world_point, here.height * body_length, facing);
     vec3 eye = normalize(cameraPosition - world_point);
     // Near the floor, less light comes from below.
     float above = smoothstep(-0.1, 0.7, (world_point.z - floor_z) / body_length + 0.5 * n.z);
     float open = mix(0.5, 1.0, above);
     float rough = clamp(here.roughness, 0.04, 1.0);
-    vec3 light = lit(here.colour, rough, metalness, n, eye, 1.0, open);
+    vec3 light = lit(here.colour, rough, metalness, n, eye, shade, open);
     // A cut shows the inside as a flat surface.
     if (!gl_FrontFacing && clip_plane.xyz != vec3(0.0)) light = 0.7 * base;
     float edge = pow(1.0 - abs(dot(n, eye)), 3.0);
@@ -79,6 +82,12 @@ const kFragmentShader = /* glsl */ `
     #include <colorspace_fragment>
   }
 `;
+
+/** The uniforms of the surroundings. */
+export interface Surroundings {
+  floor: FloorUniforms;
+  sun: SunUniforms;
+}
 
 /** Returns the rotation and scale from rest coordinates to the grain: the longest axis first. */
 export function grainOf(box: Box3): { toGrain: Matrix3; length: number } {
@@ -94,7 +103,7 @@ export function grainOf(box: Box3): { toGrain: Matrix3; length: number } {
 /** Returns the material of a solid's surface. `box` is its extent at rest. */
 export function solidMaterial(
   body: BodyUniforms,
-  { floor_z }: FloorUniforms,
+  { floor, sun }: Surroundings,
   box: Box3,
 ): ShaderMaterial {
   const { toGrain, length } = grainOf(box);
@@ -103,11 +112,13 @@ export function solidMaterial(
     fragmentShader: kFragmentShader,
     uniforms: {
       ...body,
-      floor_z,
+      ...sun,
+      floor_z: floor.floor_z,
       to_grain: { value: toGrain },
       body_length: { value: length },
       opacity: { value: 1 },
     },
+    defines: { FINISH: 0 },
     side: DoubleSide,
   });
 }
