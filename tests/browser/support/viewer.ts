@@ -92,9 +92,9 @@ export class Viewer {
     );
   }
 
-  /** Waits for the picture of this scene. */
+  /** Waits for the picture of this scene, and for the part of the page that draws solids. */
   async untilScene(scene: string): Promise<void> {
-    await this.until(`#view[data-joined="true"][data-scene="${scene}"]`);
+    await this.until(`#view[data-joined="true"][data-solids][data-scene="${scene}"]`);
   }
 
   /** Returns a data attribute of the canvas. */

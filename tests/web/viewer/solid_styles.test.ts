@@ -99,6 +99,14 @@ describe('The style of solids', () => {
     expect(shapeless!.geometry.getAttribute('center').count).toBe(2);
   });
 
+  it('is a ball for a rigid body of one particle', () => {
+    const { body, name, material, radius } = kBase;
+    const one = { body, name, material, radius, kind: 'rigid' as const, particles: 1 };
+    const view = viewOf({ ...one, local_positions: [0, 0, 0] });
+    const [solid] = shown(view);
+    expect(round(extentOf(view, solid!).max)).toEqual([0.5, 0.5, 0.5]);
+  });
+
   it('is a surface that follows the particles of a deformable body between frames', () => {
     const view = viewOf(kBar);
     view.showGrid(blockAt([3, 2, 2, 4, 2, 2]), headerAt(0));
