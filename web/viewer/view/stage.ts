@@ -34,6 +34,7 @@ export class Stage {
   private drewLast = false;
   /** Called after each picture: its time [ms], and whether the previous animation frame was drawn. */
   onDrawn: (at: number, follows: boolean) => void = () => undefined;
+  private firstMargin = kFirstMargin;
   /** The box in the initial view; undefined after the user has rotated it. */
   private framed: Box3 | undefined = new Box3();
 
@@ -130,7 +131,7 @@ export class Stage {
 
   private showFramed(): void {
     if (!this.framed || this.framed.isEmpty()) return;
-    const { target, distance } = fitBox(this.framed, kFirstView, this.camera, kFirstMargin);
+    const { target, distance } = fitBox(this.framed, kFirstView, this.camera, this.firstMargin);
     this.camera.position.copy(target).addScaledVector(kFirstView, distance);
     this.camera.near = distance / 100;
     this.camera.far = distance * 20;
@@ -147,9 +148,19 @@ export class Stage {
     if (clientWidth === 0 || clientHeight === 0) return;
     this.renderer.setSize(clientWidth, clientHeight, false);
     this.camera.aspect = clientWidth / clientHeight;
-    this.camera.updateProjectionMatrix();
+    this.reserve(clientWidth, clientHeight);
     this.showFramed();
     this.invalidate();
+  }
+
+  /** Centres the picture above the controls that the style sheet places over its lower edge. */
+  private reserve(width: number, height: number): void {
+    const style = getComputedStyle(this.canvas).getPropertyValue('--reserved-bottom');
+    const reserved = Math.min(parseFloat(style) || 0, height / 2);
+    this.firstMargin = (kFirstMargin * height) / (height - reserved);
+    if (reserved > 0) this.camera.setViewOffset(width, height, 0, reserved / 2, width, height);
+    else this.camera.clearViewOffset();
+    this.camera.updateProjectionMatrix();
   }
 
   private draw(): void {
