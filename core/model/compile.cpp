@@ -146,6 +146,7 @@ RigidModel make_rigid(Model& model, std::size_t index) {
   // In the plane, inertia is equal in all axes, and rounding must not change this.
   set_inertia(
       rigid, plane ? properties.inertia : Mat3(to_body * properties.inertia * to_body.transpose()));
+  rigid.shape_origin = to_body * (model.scene.bodies[index].position - properties.center_of_mass);
   for (Index i = 0; i < body.particles.size(); ++i) {
     model.local_position[body.particles.begin - model.free_count + i] =
         to_body * (body.sample->positions[i] - properties.center_of_mass);

@@ -129,10 +129,11 @@ struct RigidModel {
   Index body = 0;  ///< index into Model::bodies
   IndexRange particles;
   Real inverse_mass = 0;
-  Mat3 inertia;          ///< I_body about the centre of mass, in body axes [kg m^2]
-  Mat3 inverse_inertia;  ///< in body axes
-  Quat principal_axes;   ///< rotation from principal to body axes
-  Vec3 inverse_moments;  ///< about the principal axes [1 / (kg m^2)]
+  Mat3 inertia;                      ///< I_body about the centre of mass, in body axes [kg m^2]
+  Mat3 inverse_inertia;              ///< in body axes
+  Quat principal_axes;               ///< rotation from principal to body axes
+  Vec3 shape_origin = Vec3::Zero();  ///< see BodyView
+  Vec3 inverse_moments;              ///< about the principal axes [1 / (kg m^2)]
   /// Order of the principal axes: the two with the closest moments of inertia, then the third.
   std::array<int, 3> splitting;
   std::uint64_t free_from = 0;  ///< first nominal step in which forces act on the body

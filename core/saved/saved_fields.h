@@ -13,6 +13,15 @@ void describe(Archive& archive, Of<Archive, Vat>& v) {
   auto& [min, max, lid, motion, walls, hand] = v;
   archive(min, max, lid, motion, walls);
 }
+/// Describes the fields of a material except `appearance`, which follows the state; see
+/// Snapshot::to_bytes().
+template <class Archive>
+void describe(Archive& archive, Of<Archive, Material>& v) {
+  auto& [name, density, liquid, springs, self_contact, implicit_springs, plasticity, tearing_strain,
+         elongation_limit, bulk_modulus, appearance] = v;
+  archive(name, density, liquid, springs, self_contact, implicit_springs, plasticity,
+          tearing_strain, elongation_limit, bulk_modulus);
+}
 /// Describes the fields of a liquid sample. Liquids have no springs, cells and fixed particles.
 template <class Archive>
 void describe(Archive& archive, Of<Archive, SampledBody>& v) {

@@ -47,7 +47,7 @@ Result<std::span<const std::uint8_t>> open_sealed(const Seal& seal,
   }
   ByteReader reader(bytes.subspan(kSealVersionAt));
   const auto version = reader.get<std::uint32_t>();
-  if (version != seal.version) {
+  if (version < seal.oldest_version || version > seal.version) {
     return Error{"other_version", "",
                  name + " is in version " + std::to_string(version) +
                      " of its format, and this program reads version " +
@@ -65,6 +65,11 @@ Result<std::span<const std::uint8_t>> open_sealed(const Seal& seal,
     return Error{"damaged", "", name + " does not match its checksum"};
   }
   return content;
+}
+
+std::uint32_t sealed_version(std::span<const std::uint8_t> bytes) {
+  VAT_CHECK(bytes.size() >= kSealSize);
+  return ByteReader(bytes.subspan(kSealVersionAt)).get<std::uint32_t>();
 }
 
 }  // namespace vat

@@ -20,7 +20,8 @@ inline constexpr std::size_t kSealVersionAt = 8;
 struct Seal {
   std::string_view magic;  ///< magic number of eight bytes
   std::uint32_t version = 0;
-  std::string_view name;  ///< for error messages: "a saved simulation"
+  std::string_view name;                   ///< for error messages: "a saved simulation"
+  std::uint32_t oldest_version = version;  ///< oldest version that this program reads
 };
 
 /// begin_sealed() returns a header to which the caller appends the content. close_seal() then
@@ -32,5 +33,7 @@ void close_seal(std::vector<std::uint8_t>& bytes);
 /// wrong_length or damaged.
 Result<std::span<const std::uint8_t>> open_sealed(const Seal& seal,
                                                   std::span<const std::uint8_t> bytes);
+/// Returns the format version of bytes that open_sealed() accepts.
+std::uint32_t sealed_version(std::span<const std::uint8_t> bytes);
 
 }  // namespace vat

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "core/scene/appearance.h"
 #include "core/types.h"
 
 /// Material constants. core/scene/material_members.h lists their ranges and units.
@@ -13,6 +14,7 @@ namespace vat {
 struct SpringConstants {
   Real stiffness = 0;
   Real damping = 0;
+  bool operator==(const SpringConstants&) const = default;
 };
 
 /// SPH constants of a liquid material.
@@ -24,6 +26,7 @@ struct LiquidConstants {
   /// 2)) to the viscosity of weakly compressible liquids in d dimensions.
   Real artificial_viscosity = 0.02;
   Real surface_tension = 0;  ///< sigma [N/m]; see core/liquid/surface/surface_tension.h
+  bool operator==(const LiquidConstants&) const = default;
 };
 
 /// Static springs between lattice neighbours of a sampled deformable body. Structural springs are
@@ -33,6 +36,7 @@ struct LatticeSprings {
   std::optional<SpringConstants> structural;
   std::optional<SpringConstants> shear;
   std::optional<SpringConstants> bend;
+  bool operator==(const LatticeSprings&) const = default;
 };
 
 /// Plastic flow of static springs. The model is rate-independent with linear kinematic hardening
@@ -45,6 +49,7 @@ struct Plasticity {
   Real hardening = 0;        ///< plastic modulus / stiffness; 0: perfectly plastic
   Real relaxation_time = 0;  ///< relaxation of the stress beyond yield [s]; 0: instantaneous
   Real max_strain = 0.5;     ///< maximum |p|
+  bool operator==(const Plasticity&) const = default;
 };
 
 /// Material. The kind of a body determines the parts of its material that are used.
@@ -65,6 +70,8 @@ struct Material {
   /// Bulk modulus K [Pa], in two dimensions [N/m]. Lattice cells of sampled deformable bodies
   /// resist changes of volume; see core/solid/volume.h.
   Real bulk_modulus = 0;
+  Appearance appearance{};  ///< without effect on the physics
+  bool operator==(const Material&) const = default;
 };
 
 }  // namespace vat

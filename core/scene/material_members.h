@@ -89,4 +89,15 @@ inline constexpr std::array kMembersOf<Material>{
                      "[N/m] in two dimensions"},
 };
 
+template <>
+inline constexpr std::array kMembersOf<Appearance>{
+    Member<Appearance>{"roughness", &Appearance::roughness, false, 0, 1, "", "0: mirror, 1: matt"},
+    Member<Appearance>{"metalness", &Appearance::metalness, false, 0, 1, "",
+                       "0: dielectric, 1: metal"},
+    Member<Appearance>{"opacity", &Appearance::opacity, false, 0, 1, "",
+                       "0: transparent, 1: opaque"},
+    Member<Appearance>{"absorption_length", &Appearance::absorption_length, false, kMinLength,
+                       kMaxLength, "m", "depth at which white light has the colour"},
+};
+
 }  // namespace vat

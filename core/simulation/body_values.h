@@ -35,6 +35,9 @@ struct BodyView {
   std::optional<RigidPose> pose;     ///< only for rigid bodies
   /// Only for rigid bodies: positions relative to the centre of mass, in body axes [m].
   std::span<const Vec3> local_positions;
+  /// Only for rigid bodies: origin of the axes of the shape relative to the centre of mass, in body
+  /// axes [m].
+  Vec3 shape_origin = Vec3::Zero();
   bool is_asleep = false;            ///< see Scene::sleeping
   std::span<const Index> numbers{};  ///< ascending; empty if numbers are indices
 };

@@ -194,6 +194,12 @@ bool changes_nozzles(const Scene& scene, const Material& before, const Material&
   });
 }
 
+bool differs_in_appearance_only(const Material& before, const Material& after) {
+  Material repainted = before;
+  repainted.appearance = after.appearance;
+  return repainted == after;
+}
+
 std::vector<const SampledBody*> changed_samples(const Model& model) {
   std::vector<const SampledBody*> samples;
   for (const ModelBody& body : model.bodies) {
@@ -203,6 +209,22 @@ std::vector<const SampledBody*> changed_samples(const Model& model) {
 }
 
 }  // namespace
+
+void SimulationImpl::set_appearance(const std::string& material, const Appearance& appearance) {
+  const auto repaint = [&](const Model& before) {
+    auto after = std::make_shared<Model>(before);
+    after->scene.materials[material_index(after->scene.materials, material)].appearance =
+        appearance;
+    return after;
+  };
+  model = repaint(*model);
+  if (!sleepers) return;
+  const bool is_shown = shown_sleepers == sleepers;
+  auto after = std::make_shared<Sleepers>(*sleepers);
+  after->model = repaint(*sleepers->model);
+  sleepers = std::move(after);
+  if (is_shown) shown_sleepers = sleepers;
+}
 
 Status HostInterface::set_material(const Material& material) {
   const std::string path = "/material";
@@ -216,6 +238,10 @@ Status HostInterface::set_material(const Material& material) {
   Errors errors =
       find_material_errors(model.scene, impl_->present(), changed_samples(model), material, path);
   if (!errors.empty()) return errors;
+  if (!is_new && differs_in_appearance_only(*before, material)) {
+    impl_->set_appearance(material.name, material.appearance);
+    return {};
+  }
   const Real ratio = is_new ? 1 : material.density / before->density;
   impl_->wake_all();
   std::vector<BodyId> described_anew;

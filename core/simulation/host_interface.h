@@ -49,7 +49,8 @@ class HostInterface {
   Status move_body(BodyId id, const BodyPlacement& placement);
   /// Adds a material, or replaces the constants of the material with the same name. A new density
   /// changes the masses of bodies without an explicit mass. Velocities and numerics are unchanged.
-  /// Plastic flow and tears persist if the springs join the same particles. Fails like
+  /// Plastic flow and tears persist if the springs join the same particles. A change of the
+  /// appearance alone does not change the state. Fails like
   /// Simulation::create(), with paths under "/material". Also fails if the support radius of an
   /// emitted liquid would change.
   Status set_material(const Material& material);

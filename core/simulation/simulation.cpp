@@ -170,6 +170,7 @@ BodyView SimulationImpl::view_of(const ModelBody& body) const {
         RigidPose{rigid_state.center_of_mass, rigid_state.orientation,
                   rigid.inverse_mass * rigid_state.momentum,
                   angular_velocity(rigid, rigid_state.orientation, rigid_state.angular_momentum)};
+    view.shape_origin = rigid.shape_origin;
     view.local_positions =
         std::span(all().local_position)
             .subspan(body.particles.begin - all().free_count, body.particles.size());

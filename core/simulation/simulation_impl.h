@@ -94,8 +94,9 @@ struct SimulationImpl : SimulationContent {
   /// Returns the bounds of the stepped bodies. The travel bound of a body depends on all bodies
   /// that it can touch, including sleepers.
   static GuardBounds bounds_of(const SimulationContent& content);
-  /// Replaces the content by the bytes of a snapshot. On failure, only next_id changes.
-  Status load(LoadingArchive& archive);
+  /// Replaces the content by the bytes of a snapshot in a version of the format. On failure, only
+  /// next_id changes.
+  Status load(LoadingArchive& archive, std::uint32_t version);
   /// Replaces the content and its bounds. Does not fail.
   void adopt(SimulationContent content, GuardBounds content_bounds,
              StepBounds content_step_bounds) noexcept;
@@ -111,6 +112,9 @@ struct SimulationImpl : SimulationContent {
   /// Performs recompile() after a change of one body's initial position and motion. Only this body
   /// is compiled. No body may sleep.
   void recompile_moved(std::size_t body, BodyDescription moved);
+  /// Sets the appearance of an existing material. Nothing else changes: no body wakes, and no force
+  /// is computed again.
+  void set_appearance(const std::string& material, const Appearance& appearance);
   /// Returns the ids of all bodies, in order.
   std::vector<BodyId> ids() const;
   /// Melts bodies. On failure, nothing changes.

@@ -15,7 +15,15 @@
 namespace vat {
 namespace {
 
-constexpr Seal kSeal{"vat.sim\n", 1, "a saved simulation"};
+/// Since version 2, the bytes end with the motion of the vat by a user, which may be absent, and
+/// the appearances of the materials. Version 1 ends with the motion, if there is one.
+constexpr Seal kSeal{"vat.sim\n", 2, "a saved simulation", 1};
+
+std::vector<Appearance> appearances_of(const Scene& scene) {
+  std::vector<Appearance> appearances;
+  for (const Material& material : scene.materials) appearances.push_back(material.appearance);
+  return appearances;
+}
 
 }  // namespace
 
@@ -96,6 +104,28 @@ Status bad_bytes(const LoadingArchive& archive) {
   return {};
 }
 
+/// Reads the end of the bytes, which depends on their version.
+Status load_additions(LoadingArchive& archive, std::uint32_t version, Scene& scene) {
+  std::optional<HandMotion> hand;
+  std::vector<Appearance> appearances(scene.materials.size());
+  if (version >= 2) {
+    archive(hand, appearances);
+  } else if (archive.left() > 0 && scene.vat) {
+    archive(hand.emplace());
+  }
+  if (Status status = bad_bytes(archive); !status) return status;
+  if (appearances.size() != scene.materials.size() || (hand && !scene.vat)) {
+    return Error{"bad_value", "", "the end of the saved simulation does not fit its scene"};
+  }
+  for (std::size_t m = 0; m < appearances.size(); ++m) {
+    scene.materials[m].appearance = appearances[m];
+  }
+  if (!hand) return {};
+  if (Status status = check_saved_hand(*hand); !status) return status;
+  scene.vat->hand = hand;
+  return {};
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> Snapshot::to_bytes() const {
@@ -108,7 +138,7 @@ std::vector<std::uint8_t> Snapshot::to_bytes() const {
           content_->sleepers != nullptr);
   if (content_->sleepers) archive(content_->sleepers->configuration, content_->sleepers->islands);
   archive(content_->state, content_->controls);
-  if (all.scene.vat && all.scene.vat->hand) archive(*all.scene.vat->hand);
+  archive(all.scene.vat ? all.scene.vat->hand : std::nullopt, appearances_of(all.scene));
   close_seal(bytes);
   return bytes;
 }
@@ -133,11 +163,11 @@ Result<Simulation> Simulation::load(std::span<const std::uint8_t> bytes, TaskRun
   SimulationImpl& impl = *simulation.impl_;
   impl.runner = runner;
   impl.work.instructions = impl.measured.instructions = saved;
-  if (Status loaded = impl.load(archive); !loaded) return loaded.errors();
+  if (Status loaded = impl.load(archive, sealed_version(bytes)); !loaded) return loaded.errors();
   return simulation;
 }
 
-Status SimulationImpl::load(LoadingArchive& archive) {
+Status SimulationImpl::load(LoadingArchive& archive, std::uint32_t version) {
   std::uint64_t saved_hash = 0;
   Scene scene;
   std::vector<SavedBody> bodies;
@@ -148,13 +178,7 @@ Status SimulationImpl::load(LoadingArchive& archive) {
   if (some_sleep) archive(configuration, islands);
   SimulationContent content;
   archive(content.state, content.controls);
-  std::optional<HandMotion> hand;  // last, because it was added to the format last
-  if (archive.left() > 0 && scene.vat) archive(hand.emplace());
-  if (Status status = bad_bytes(archive); !status) return status;
-  if (hand) {
-    if (Status status = check_saved_hand(*hand); !status) return status;
-    scene.vat->hand = hand;
-  }
+  if (Status status = load_additions(archive, version, scene); !status) return status;
   if (Status status = check_saved_scene(scene, bodies, next_id); !status) return status;
 
   content.model = compile_saved(std::move(scene), std::move(bodies));

@@ -96,6 +96,7 @@ void check_material(const Material& material, const std::string& path, RangeChec
   if (material.liquid) check_members(*material.liquid, path + "/liquid", check);
   if (material.self_contact) check_members(*material.self_contact, path + "/self_contact", check);
   if (material.plasticity) check_members(*material.plasticity, path + "/plasticity", check);
+  check_members(material.appearance, path + "/appearance", check);
   check_spring_changes(material, path, check);
   if (!material.springs) return;
   const auto lattice = [&](const std::optional<SpringConstants>& constants, const char* name) {

@@ -40,6 +40,8 @@ Result<Material> read_material(const Json& document, const std::string& path);
 /// Returns JSON from which read_scene() creates a bitwise equal scene. Meshes are inline, with
 /// vertices and triangles.
 Json write_scene(const Scene& scene);
+/// Returns a shape in the format of a scene file.
+Json write_shape(const Shape& shape);
 
 /// Entry of the catalogue of scenes. `name` is the file name without its extension.
 struct CatalogueEntry {

@@ -5,6 +5,7 @@
 
 #include "core/limits.h"
 #include "core/scene/material_members.h"
+#include "protocol/scene/appearance.h"
 
 namespace vat::scene_parts {
 namespace {
@@ -119,6 +120,7 @@ Material to_material(const Json& value, std::string path, Errors& errors) {
   read_member(reader, "springs", material.springs, errors, to_lattice_springs);
   read_member(reader, "self_contact", material.self_contact, errors, to_part<SpringConstants>);
   read_member(reader, "plasticity", material.plasticity, errors, to_part<Plasticity>);
+  read_member(reader, "appearance", material.appearance, errors, to_appearance);
   reader.refuse_unknown();
   return material;
 }

@@ -1,5 +1,6 @@
 
 #include "core/scene/material_members.h"
+#include "protocol/scene/appearance.h"
 #include "protocol/scene/scene_json.h"
 
 namespace vat {
@@ -45,6 +46,8 @@ Json to_json(const Material& material) {
   if (material.springs) json["springs"] = to_json(*material.springs);
   if (material.self_contact) json["self_contact"] = to_json(*material.self_contact);
   if (material.plasticity) json["plasticity"] = members_of(*material.plasticity);
+  Json appearance = write_appearance(material.appearance);
+  if (!appearance.empty()) json["appearance"] = std::move(appearance);
   return json;
 }
 
@@ -177,7 +180,7 @@ Json to_json(const BodyDescription& body) {
   Json json = {{"name", body.name},
                {"kind", to_string(body.kind)},
                {"material", body.material},
-               {"shape", std::visit([](const auto& shape) { return to_json(shape); }, body.shape)},
+               {"shape", write_shape(body.shape)},
                {"position", to_json(body.position)},
                {"orientation", Json::array({body.orientation.w(), body.orientation.x(),
                                             body.orientation.y(), body.orientation.z()})},
@@ -231,6 +234,10 @@ Json to_list(const std::vector<T>& values) {
 }
 
 }  // namespace
+
+Json write_shape(const Shape& shape) {
+  return std::visit([](const auto& s) { return to_json(s); }, shape);
+}
 
 Json write_scene(const Scene& scene) {
   Json json = {{"format", "vat.scene/1"},

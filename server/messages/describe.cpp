@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/sampling/lattice.h"
+#include "core/support/check.h"
+#include "protocol/scene/appearance.h"
+#include "protocol/scene/scene_json.h"
 #include "server/output/text.h"
 
 namespace vat {
@@ -24,7 +28,39 @@ Json to_flat_json(std::span<const Vec3> vectors) {
   return list;
 }
 
-Json describe_body(const BodyView& body) {
+/// Returns the shape, displaced by `origin`.
+Shape displaced(Shape shape, const Vec3& origin) {
+  const auto displace = [&](auto& s) {
+    if constexpr (requires { s.center; }) {
+      s.center += origin;
+    } else if constexpr (requires { s.vertices; }) {
+      for (Vec3& vertex : s.vertices) vertex += origin;
+    }
+  };
+  std::visit(displace, shape);
+  return shape;
+}
+
+/// Adds the members with which a client can draw the surface of a solid.
+void describe_shape(const BodyView& body, const BodyDescription& described, int dimensions,
+                    Json& description) {
+  const bool is_rigid = body.kind == BodyKind::rigid;
+  if (is_rigid) description["local_positions"] = to_flat_json(body.local_positions);
+  if (std::holds_alternative<ParticleShape>(described.shape)) return;
+  const Vec3 origin = is_rigid ? body.shape_origin : Vec3(Vec3::Zero());
+  description["shape"] = write_shape(displaced(described.shape, origin));
+  description["shape"].erase("source");
+  if (is_rigid) return;
+  const Lattice lattice = make_lattice(described.shape, described.spacing, dimensions);
+  std::vector<Vec3> rest;
+  for (const LatticePoint& point : fill_lattice(described.shape, lattice)) {
+    rest.push_back(point.position);
+  }
+  description["rest_positions"] = to_flat_json(rest);
+  description["spacing"] = described.spacing;
+}
+
+Json describe_body(const BodyView& body, const BodyDescription& described, int dimensions) {
   Json description{
       {"body", body.id},
       {"name", body.name},
@@ -33,9 +69,7 @@ Json describe_body(const BodyView& body) {
       {"particles", body.positions.size()},
       {"radius", body.radii.empty() ? 0 : *std::ranges::max_element(body.radii)},
   };
-  if (body.kind == BodyKind::rigid) {
-    description["local_positions"] = to_flat_json(body.local_positions);
-  }
+  if (body.kind != BodyKind::liquid) describe_shape(body, described, dimensions, description);
   return description;
 }
 
@@ -50,8 +84,24 @@ Json to_json(const Quat& orientation) {
 }
 
 Json describe_bodies(const Simulation& simulation) {
+  const Scene& scene = simulation.scene();
+  const std::vector<BodyView> bodies = simulation.bodies();
+  VAT_CHECK(bodies.size() == scene.bodies.size());
   Json list = Json::array();
-  for (const BodyView& body : simulation.bodies()) list.push_back(describe_body(body));
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    list.push_back(describe_body(bodies[b], scene.bodies[b], scene.dimensions));
+  }
+  return list;
+}
+
+Json describe_materials(const Scene& scene) {
+  Json list = Json::array();
+  for (const Material& material : scene.materials) {
+    Json description{{"name", material.name},
+                     {"appearance", write_appearance(full_appearance(material))}};
+    if (material.tearing_strain) description["tearing_strain"] = *material.tearing_strain;
+    list.push_back(std::move(description));
+  }
   return list;
 }
 

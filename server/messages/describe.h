@@ -13,6 +13,9 @@ Json to_json(const Quat& orientation);
 
 /// Returns the `bodies` of a session's description. The bodies do not change within an epoch.
 Json describe_bodies(const Simulation& simulation);
+/// Returns the `materials` of a session's description: names, complete appearances, and
+/// the strains at which springs tear.
+Json describe_materials(const Scene& scene);
 /// Returns the vat at offset zero, or `null` without a vat.
 Json describe_vat(const std::optional<Vat>& vat);
 /// Returns a body in the result of state.query, with full precision.

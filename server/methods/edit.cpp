@@ -30,6 +30,7 @@ ActionResult set_material(SessionCore& core, const Json& value) {
   auto error = change_within_limits(
       core, [&](Simulation& simulation) { return simulation.set_material(material.value()); });
   if (error) return *std::move(error);
+  core.notifier().mark_description();
   return Json::object();
 }
 

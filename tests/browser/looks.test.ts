@@ -205,6 +205,18 @@ it('points arrows where the liquid goes', async () => {
   await expect.poll(darker, kInTime).toBeGreaterThan(10); // dark ink over the water
 });
 
+it('draws bodies as their shapes, with shadows on the floor', async () => {
+  await visit('deformable-drop', 0);
+  const before = await visits.viewer.stillPicture();
+  const shadow = await statistics({ left: 0.58, top: 0.67, right: 0.62, bottom: 0.71 });
+  const floor = await statistics({ left: 0.32, top: 0.76, right: 0.36, bottom: 0.8 });
+  expect(floor.green - shadow.green).toBeGreaterThan(30);
+  await visits.set('solids:particles');
+  await expect.poll(() => changeFrom(before), kInTime).toBeGreaterThan(3000);
+  await visits.set('solids:shape');
+  await expect.poll(() => changeFrom(before), kInTime).toBeLessThan(kSame);
+});
+
 it('gives bodies smooth skins', async () => {
   await visit('sliding-vat-liquid', 1, 'liquid:particles');
   const before = await visits.viewer.stillPicture();

@@ -46,6 +46,32 @@ it('changes the constants of a material, within their range, and restores them',
   await expect.poll(() => page.inputValue(field), kInTime).toBe(String(before));
 });
 
+it('changes the appearance of a material, which is drawn, and restores it', async () => {
+  await visit('rigid-stack');
+  const { page } = visits.viewer;
+  const appearance = async (): Promise<unknown> =>
+    (await visits.scene()).materials.find(({ name }) => name === 'wood')?.appearance;
+  const before = await visits.viewer.stillPicture();
+  const changed = async (): Promise<number> =>
+    visits.viewer.difference(before, await visits.viewer.picture());
+  await page.selectOption('#material', 'wood');
+  const brown = await page.inputValue('#appearance-colour');
+  await page.fill('#appearance-colour', '#2040ff');
+  await page.dispatchEvent('#appearance-colour', 'change');
+  await expect.poll(appearance, kInTime).toEqual({ colour: '#2040ff' });
+  await expect.poll(changed, kInTime).toBeGreaterThan(1000);
+  await page.selectOption('#appearance-finish', 'brick');
+  await expect.poll(appearance, kInTime).toEqual({ colour: '#2040ff', finish: 'brick' });
+  await enter('#appearance-roughness', '2');
+  await page.waitForSelector(
+    '.parameter:has(#appearance-roughness) .fault:has-text("from 0 to 1")',
+  );
+  await page.click('#appearance-reset');
+  await expect.poll(appearance, kInTime).toBeUndefined();
+  await expect.poll(() => page.inputValue('#appearance-colour'), kInTime).toBe(brown);
+  await expect.poll(changed, kInTime).toBeLessThan(20);
+});
+
 it('changes what happens where two materials meet, and restores it', async () => {
   await visit('rigid-stack');
   const { page } = visits.viewer;

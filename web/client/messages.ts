@@ -13,6 +13,7 @@ export type {
   Events,
   InEffect,
   InstructionSet as InstructionSetName,
+  MaterialDescription,
   Methods,
   Participant,
   RecordedPeople,
@@ -32,6 +33,7 @@ export type {
   VatDescription,
 } from './protocol.js';
 export type {
+  Appearance,
   Body as SceneBody,
   Emitter as SceneEmitter,
   Interface as SceneInterface,

@@ -1,5 +1,11 @@
 // Written from protocol/schemas/ by `npm run types`; not to be edited.
-import type {Body as SceneBody, Interface as SceneInterface, Scene} from './scene_format.js';
+import type {
+  Appearance,
+  Body as SceneBody,
+  Interface as SceneInterface,
+  Scene,
+  Shape
+} from './scene_format.js';
 
 /** A secret that grants access */
 export type Token = string;
@@ -148,12 +154,24 @@ export interface BodyDescription {
   radius: number;
   /** Rigid bodies: particles relative to the centre of mass in body axes, 3 numbers each */
   local_positions?: number[];
+  shape?: Shape;
+  /** Deformable bodies with a shape: lattice spacing [m] */
+  spacing?: number;
+  /** Deformable bodies with a shape: particles at rest in the axes of the shape, 3 numbers each */
+  rest_positions?: number[];
 }
 /** First tick at which the replay differs from the recording; it pauses there */
 export interface Divergence {
   position: Position;
   tick: Tick;
   reason: string;
+}
+
+export interface MaterialDescription {
+  name: string;
+  appearance: Appearance;
+  /** Strain at which springs tear, if they do */
+  tearing_strain?: number;
 }
 
 export interface SessionDescription {
@@ -174,6 +192,8 @@ export interface SessionDescription {
   tick_seconds: number;
   gravity: Vector;
   vat: null | VatDescription;
+  /** Complete appearances, in the order of the scene */
+  materials: MaterialDescription[];
   /** In the order of the blocks in frames */
   bodies: BodyDescription[];
   /** Present if the session is a replay */

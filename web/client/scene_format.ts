@@ -153,6 +153,21 @@ export interface Material {
   elongation_limit?: number;
   /** [Pa] */
   bulk_modulus?: number;
+  appearance?: Appearance;
+}
+/** Colour and surface in pictures; absent members follow from the name and the constants of the material */
+export interface Appearance {
+  /** sRGB */
+  colour?: string;
+  /** 0: mirror, 1: matt */
+  roughness?: number;
+  /** 0: dielectric, 1: metal */
+  metalness?: number;
+  /** 0: transparent, 1: opaque */
+  opacity?: number;
+  absorption_length?: Length;
+  /** Pattern on the surface of a solid */
+  finish?: 'none' | 'wood' | 'brick' | 'rubber' | 'steel' | 'clay';
 }
 
 export interface Wall {

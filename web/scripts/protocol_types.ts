@@ -13,11 +13,13 @@ interface SchemaFile {
 const kFolder = new URL('../../protocol/schemas/', import.meta.url);
 const kShared = new Set(['common', 'errors', 'events', 'message', 'scene_format']);
 const kBanner = '// Written from protocol/schemas/ by `npm run types`; not to be edited.';
-/** Types of scenes in messages, which clients send unchanged. */
+/** Types of scenes and their parts in messages. */
 const kSceneTypes: Readonly<Record<string, string>> = {
+  appearance: 'Appearance',
   body: 'SceneBody',
   interface: 'SceneInterface',
   scene: 'Scene',
+  shape: 'Shape',
 };
 
 export interface GeneratedFile {
@@ -142,7 +144,7 @@ export async function generate(): Promise<GeneratedFile[]> {
   const files = readSchemas();
   const groups = [...files.keys()].filter((name) => name !== 'scene_format' && name !== 'message');
   const imported =
-    "import type { Body as SceneBody, Interface as SceneInterface, Scene } from './scene_format.js';\n";
+    "import type { Appearance, Body as SceneBody, Interface as SceneInterface, Scene, Shape } from './scene_format.js';\n";
   const texts: [string, string][] = [
     ['protocol.ts', await writeTypes(definitionsOf(files, groups), imported, tables(files))],
     ['scene_format.ts', await writeTypes(definitionsOf(files, ['scene_format']), '', '')],

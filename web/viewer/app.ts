@@ -37,6 +37,7 @@ import './view/stage.css';
 import './panel/panel.css';
 import './panel/dialogs.css';
 import './people/people.css';
+import './panel/bar.css';
 import './panel/phone.css';
 
 /** Connects the server's stream, the drawn world and the panel. */

@@ -115,7 +115,7 @@ export class Controls {
     this.pour.describe(description, isEarlier);
     this.builder.describe(description, isNew || isEarlier);
     this.vatPad.describe(description);
-    this.parameters.describe(isNew || isEarlier);
+    this.parameters.describe(description, isNew || isEarlier);
     this.kept.describe(description);
     this.replay.describe(description);
     this.playback.showPlaying(description.playing);

@@ -176,6 +176,7 @@ Json SessionNotifier::describe_session() const {
       {"tick_seconds", run_.tick_seconds()},
       {"gravity", to_json(scene.gravity)},
       {"vat", describe_vat(scene.vat)},
+      {"materials", describe_materials(scene)},
   };
   if (context_.playback != nullptr) {
     const Playback::Range range = context_.playback->range();

@@ -18,6 +18,8 @@ export type Look = Pick<
 > & {
   /** Runs before the page is loaded. */
   before?: (page: Page) => Promise<unknown>;
+  /** Shows the panel as a bar, as at the first visit. By default, the panel is beside the picture. */
+  hasBar?: boolean;
   /** Omits the transcript, because not all messages are the server's. */
   isUnrecorded?: boolean;
 };
@@ -53,13 +55,14 @@ export class Viewer {
   /** Opens the page in `shared`, or in a new browser that ends with the page. */
   static async open(
     url: string,
-    { before, isUnrecorded, ...look }: Look = {},
+    { before, isUnrecorded, hasBar, ...look }: Look = {},
     shared?: Browser,
   ): Promise<Viewer> {
     const browser = shared ?? (await launchChromium());
     const page = await browser.newPage({ viewport: { width: 1000, height: 640 }, ...look });
     const viewer = new Viewer(page, url, browser, shared === undefined);
     await page.addInitScript(addBrake);
+    if (!hasBar) await page.addInitScript(extendPanel);
     await before?.(page);
     if (!isUnrecorded) recordPage(page);
     await page.goto(url);
@@ -92,9 +95,9 @@ export class Viewer {
     );
   }
 
-  /** Waits for the picture of this scene. */
+  /** Waits for the picture of this scene, and for the part of the page that draws solids. */
   async untilScene(scene: string): Promise<void> {
-    await this.until(`#view[data-joined="true"][data-scene="${scene}"]`);
+    await this.until(`#view[data-joined="true"][data-solids][data-scene="${scene}"]`);
   }
 
   /** Returns a data attribute of the canvas. */
@@ -181,6 +184,11 @@ declare global {
   interface Window {
     brake(on: boolean): void;
   }
+}
+
+/** Runs in the browser: the panel is extended, unless the page has stored another choice. */
+function extendPanel(): void {
+  if (!localStorage.getItem('vat.panel')) localStorage.setItem('vat.panel', 'open');
 }
 
 /** Runs in the browser, before the page's own scripts. */

@@ -139,7 +139,8 @@ function closeAll(): void {
   for (const dialog of document.querySelectorAll('dialog')) dialog.close();
   document.getElementById('notices')!.replaceChildren();
   const sheet = document.getElementById('sheet')!;
-  if (sheet.ariaExpanded === 'true') sheet.click();
+  const isPhone = matchMedia('(max-width: 760px)').matches;
+  if (isPhone && sheet.ariaExpanded === 'true') sheet.click();
   for (const section of document.querySelectorAll<HTMLDetailsElement>('#sections > details[id]')) {
     section.open = section.id === 'numbers-details';
   }

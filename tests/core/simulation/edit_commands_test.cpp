@@ -63,6 +63,28 @@ TEST_F(MoveBody, TurnsRigidBodiesWhichGoOnTurningAsTheyDid) {
   EXPECT_LT(simulation.bodies()[2].pose->orientation.angularDistance(turned), 1e-7);
 }
 
+// The corners of the shape, displaced by the origin, enclose the particles.
+TEST_F(MoveBody, TheShapeOfARigidBodyIsAroundItsParticles) {
+  simulation.advance(50);
+  const auto check = [&] {
+    const BodyView body = simulation.bodies()[2];
+    const BoxShape box = std::get<BoxShape>(simulation.scene().bodies[2].shape);
+    Vec3 low = Vec3::Constant(1);
+    Vec3 high = Vec3::Constant(-1);
+    for (const Vec3& local : body.local_positions) {
+      low = low.cwiseMin(local);
+      high = high.cwiseMax(local);
+    }
+    const Vec3 half = Vec3::Constant(0.025);  // half the spacing
+    EXPECT_LT((low - half - (body.shape_origin + box.center - box.size / 2)).norm(), 1e-14);
+    EXPECT_LT((high + half - (body.shape_origin + box.center + box.size / 2)).norm(), 1e-14);
+  };
+  check();
+  const Quat turned(Eigen::AngleAxis<Real>(1, Vec3::UnitX()));
+  ASSERT_TRUE(simulation.move_body(id(2), {{0.4, 0.4, 0.7}, turned, {}}).ok());
+  check();
+}
+
 // Moving a body at the start is equivalent to describing it there.
 TEST_F(MoveBody, MovesWhereItsDescriptionBegins) {
   const Quat turned(Eigen::AngleAxis<Real>(-0.5, Vec3::UnitZ()));
@@ -207,6 +229,26 @@ TEST_F(SetMaterial, ANewOneIsThereForBodies) {
   ball.position = {0.8, 0.2, 0.8};
   EXPECT_TRUE(simulation.add_body(ball).ok());
   simulation.advance(10);
+}
+
+TEST_F(SetMaterial, AnAppearanceLeavesTheStateUnchanged) {
+  simulation.advance(50);
+  const std::uint64_t before = simulation.state_hash();
+  Simulation other = Simulation::from(simulation.snapshot());
+  Material painted = material("jelly");
+  painted.appearance.colour = Colour{1, 2, 3};
+  painted.appearance.roughness = 0.25;
+  ASSERT_TRUE(simulation.set_material(painted).ok());
+  EXPECT_EQ(simulation.scene().materials[1], painted);
+  EXPECT_EQ(simulation.state_hash(), before);
+  simulation.advance(20);
+  other.advance(20);
+  EXPECT_EQ(simulation.state_hash(), other.state_hash());
+  expect_goes_on(simulation, 2);
+  const auto loaded = Simulation::load(simulation.snapshot().to_bytes());
+  EXPECT_EQ(loaded.value().scene().materials[1], painted);
+  painted.appearance.opacity = 1.5;
+  EXPECT_EQ(error(painted), "out_of_range /material/appearance/opacity");
 }
 
 TEST_F(SetMaterial, GoesOnFromItsBytesWithTheSameBits) {

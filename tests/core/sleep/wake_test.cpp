@@ -188,6 +188,20 @@ TEST(Wake, ByEveryCommandThatMayMoveSomething) {
   }
 }
 
+TEST(Wake, NotByAnAppearance) {
+  Simulation simulation = make_sleeping(make_two_crates(), "one");
+  const std::uint64_t before = simulation.state_hash();
+  Material wood = simulation.scene().materials[0];
+  wood.appearance.opacity = 0.5;
+  ASSERT_TRUE(simulation.set_material(wood).ok());
+  EXPECT_EQ(simulation.state_hash(), before);
+  EXPECT_TRUE(is_asleep(simulation, "one"));
+  EXPECT_EQ(simulation.scene().materials[0], wood);
+  ASSERT_TRUE(simulation.apply_force(id_of(simulation, "one"), {1, 0, 0}, 0.1).ok());
+  EXPECT_FALSE(is_asleep(simulation, "one"));
+  EXPECT_EQ(simulation.scene().materials[0], wood);
+}
+
 TEST(Wake, ACommandBeginsTheTimeOfRestAnew) {
   const Scene scene = make_two_crates();
   Simulation simulation = make_simulation(scene);

@@ -94,6 +94,7 @@ TEST(MaterialMembers, AreThoseOfTheDocument) {
   expect_rows<Material>();
   expect_rows<LiquidConstants>();
   expect_rows<Plasticity>();
+  expect_rows<Appearance>();
 }
 
 TEST(MaterialMembers, AreThoseOfTheSchema) {
@@ -104,6 +105,7 @@ TEST(MaterialMembers, AreThoseOfTheSchema) {
   expect_schema<LiquidConstants>(definitions, material.at("properties").at("liquid"));
   expect_schema<Plasticity>(definitions, material.at("properties").at("plasticity"));
   expect_schema<SpringConstants>(definitions, definitions.at("spring_constants"));
+  expect_schema<Appearance>(definitions, definitions.at("appearance"));
 }
 
 }  // namespace

@@ -35,7 +35,9 @@ const char* const kFullDocument = R"json({
   "materials": [
     {"name": "water", "density": 998.5,
      "liquid": {"stiffness": 90, "viscosity": 0.75, "support_radius": 0.125,
-                "artificial_viscosity": 0.25}},
+                "artificial_viscosity": 0.25},
+     "appearance": {"colour": "#1a2B3c", "roughness": 0.125, "metalness": 0.75, "opacity": 0.625,
+                    "absorption_length": 0.375, "finish": "steel"}},
     {"name": "rubber", "density": 500.25,
      "springs": {"structural": {"stiffness": 1000.5, "damping": 1.5},
                  "shear": {"stiffness": 500.5, "damping": 0.5},
@@ -107,7 +109,9 @@ const char* const kFullDocument = R"json({
 namespace {
 
 std::vector<Material> full_materials() {
-  return {{"water", 998.5, LiquidConstants{90, 0.75, 0.125, 0.25}, {}, {}},
+  Material water{"water", 998.5, LiquidConstants{90, 0.75, 0.125, 0.25}, {}, {}};
+  water.appearance = {Colour{0x1a, 0x2b, 0x3c}, 0.125, 0.75, 0.625, 0.375, Finish::steel};
+  return {water,
           {"rubber",
            500.25,
            {},
@@ -242,6 +246,7 @@ std::vector<std::uint8_t> bits_of(const Scene& scene) {
   std::vector<std::uint8_t> bytes;
   SavingArchive archive(bytes);
   archive(scene);
+  for (const Material& material : scene.materials) archive(material.appearance);
   return bytes;
 }
 

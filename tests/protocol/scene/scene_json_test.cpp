@@ -49,6 +49,7 @@ TEST(SceneJson, SavedBytesHoldEveryMember) {
   LoadingArchive archive(bytes);
   Scene loaded;
   archive(loaded);
+  for (Material& material : loaded.materials) archive(material.appearance);
   EXPECT_FALSE(archive.failed());
   EXPECT_EQ(write_scene(loaded), write_scene(full_scene()));
 }

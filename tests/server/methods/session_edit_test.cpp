@@ -64,6 +64,28 @@ TEST_F(SessionEdits, OfAPausedSessionAreShownAtOnce) {
   client->wait_frame([&](const GridFrame& frame) { return ball_at(frame, 0.5); });
 }
 
+TEST_F(SessionEdits, OfAnAppearanceAreDescribed) {
+  const std::string before = hash();
+  Json wood = client->result("scene.get").at("scene").at("materials").at(2);
+  wood["appearance"] = {{"colour", "#102030"}, {"finish", "brick"}};
+  client->result("world.set_material", {{"material", wood}});
+  const Json description = client->wait_event("session.description");
+  for (const Json& material : description.at("materials")) {
+    const Json& appearance = material.at("appearance");
+    EXPECT_TRUE(appearance.contains("roughness"));
+    EXPECT_EQ(appearance.at("colour") == "#102030", material.at("name") == wood.at("name"));
+  }
+  EXPECT_EQ(hash(), before);
+  const Json scene = client->result("scene.get", {{"current", true}}).at("scene");
+  EXPECT_EQ(scene.at("materials").at(2).at("appearance"), wood.at("appearance"));
+  wood["appearance"]["roughness"] = -1;
+  EXPECT_EQ(client->error("world.set_material", {{"material", wood}}).at("data").at("path"),
+            "/material/appearance/roughness");
+  client->result("control.reset");
+  const Json reset = client->result("scene.get", {{"current", true}}).at("scene");
+  EXPECT_FALSE(reset.at("materials").at(2).contains("appearance"));
+}
+
 TEST_F(SessionEdits, MoveTheVatThatFramesShow) {
   client->result("frames.subscribe");
   client->result("world.move_vat", {{"offset", {0.5, 0, 0}}});

@@ -3,6 +3,7 @@ import type { BufferAttribute, Mesh } from 'three';
 import { describe, expect, it } from 'vitest';
 import { BodyKind } from '../../../web/client/index';
 import type { FrameHeader, GridBlock } from '../../../web/client/index';
+import { lookOf } from '../../../web/viewer/view/base/appearance';
 import { BodyView } from '../../../web/viewer/view/bodies/body_view';
 import { Workshop } from '../../../web/viewer/view/surface/workshop';
 import { sharedUniforms } from '../../../web/viewer/view/bodies/shared_uniforms';
@@ -25,7 +26,14 @@ function liquid(particles: number): BodyView {
     particles,
     radius: 1,
   };
-  return new BodyView(description, 0, sharedUniforms(), new Workshop(), () => undefined);
+  return new BodyView(
+    description,
+    0,
+    lookOf(undefined),
+    sharedUniforms(),
+    new Workshop(),
+    () => undefined,
+  );
 }
 
 /** Returns the particle at 10 i, seen from above. */

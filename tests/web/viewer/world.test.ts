@@ -22,6 +22,7 @@ function described(epoch: number, bodies: number[], scene = 'pool'): SessionDesc
     tick_seconds: 0.02,
     gravity: [0, 0, -9.81],
     vat: { min: [0, 0, 0], max: [1, 1, 1], lid: false },
+    materials: [],
     bodies: bodies.map((body) => ({
       body,
       name: String(body),

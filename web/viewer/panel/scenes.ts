@@ -1,7 +1,12 @@
-import type { BodyKindName, SceneEntry, SessionDescription } from '../../client/index';
+import type {
+  BodyKindName,
+  MaterialDescription,
+  SceneEntry,
+  SessionDescription,
+} from '../../client/index';
 import { element, make } from './elements';
 import { formatCount } from './format';
-import { bodyColour } from '../view/base/palette';
+import { lookOf } from '../view/base/appearance';
 import type { Gallery } from './gallery';
 
 const kKindWords: Readonly<Record<BodyKindName, string>> = {
@@ -69,24 +74,22 @@ export class Scenes {
     else this.picker.prepend(this.stranger);
   }
 
-  private explainColours({ bodies }: SessionDescription): void {
+  private explainColours({ bodies, materials }: SessionDescription): void {
     const kinds = [...new Set(bodies.map(({ kind }) => kind))];
     const items = kinds.map((kind) => {
       const ofKind = bodies.filter((body) => body.kind === kind);
       const count = ofKind.reduce((sum, { particles }) => sum + particles, 0);
       const words = `${kKindWords[kind]} ${formatCount(count)}`;
-      return make('li', {}, ...swatches(kind, ofKind.length), words);
+      const used = materials.filter(({ name }) => ofKind.some(({ material }) => material === name));
+      return make('li', {}, ...swatches(used), words);
     });
     this.legend.replaceChildren(...items);
   }
 }
 
-/** Returns a dot for each colour of the bodies of a kind. */
-function swatches(kind: BodyKindName, bodies: number): HTMLElement[] {
-  const colours = Array.from(
-    { length: bodies },
-    (_, n) => `#${bodyColour(kind, n).getHexString()}`,
-  );
+/** Returns a dot for each colour of the materials. */
+function swatches(materials: readonly MaterialDescription[]): HTMLElement[] {
+  const colours = materials.map(({ appearance }) => `#${lookOf(appearance).colour.getHexString()}`);
   return [...new Set(colours)].map((colour) => {
     const dot = make('i');
     dot.style.background = colour;

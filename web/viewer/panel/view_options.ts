@@ -6,6 +6,7 @@ import type {
   SwitchName,
   ViewSettings,
 } from '../view/base/settings';
+import { quantityOf } from '../view/colour/quantity';
 import type { View } from '../view/view';
 import { ColourLegend } from './colour_legend';
 import { element, make } from './elements';
@@ -22,8 +23,14 @@ const kWords: Words = {
     splats: 'soft splats',
     particles: 'particles',
   },
-  solids: { particles: 'particles', skin: 'smooth skin', both: 'both' },
+  solids: {
+    shape: 'surface',
+    skin: 'skin around particles',
+    particles: 'particles',
+    both: 'skin and particles',
+  },
   colour: {
+    material: 'by material',
     body: 'by body',
     kind: 'by kind',
     speed: 'by speed',
@@ -48,8 +55,7 @@ export class ViewOptions {
   private readonly delay = make('p', kHidden);
 
   constructor(private readonly view: View) {
-    const isOfNumbers = ({ colour }: ViewSettings): boolean =>
-      colour !== 'body' && colour !== 'kind';
+    const isOfNumbers = ({ colour }: ViewSettings): boolean => quantityOf(colour) !== undefined;
     const isClipped = ({ clip }: ViewSettings): boolean => clip !== 'off';
     this.section.append(
       this.choice('liquid', 'Liquid'),

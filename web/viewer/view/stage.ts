@@ -9,6 +9,7 @@ import { kLayers } from './base/layers';
 import { LiquidPass } from './liquid_pass';
 import type { LiquidStyle } from './base/liquid_style';
 import type { SharedUniforms } from './bodies/shared_uniforms';
+import type { SunShadow } from './shadow/sun_shadow';
 import { graphicsOf } from './base/graphics';
 import type { Graphics } from './base/graphics';
 import type { Theme } from './base/theme';
@@ -27,10 +28,13 @@ export class Stage {
   private readonly fluid: FluidPass;
   private style: LiquidStyle = 'splats';
   private fluidLook: FluidLook | undefined;
+  /** Draws the shadow map before each picture, if there is one. */
+  sunShadow: SunShadow | undefined;
   private stale = true;
   private drewLast = false;
   /** Called after each picture: its time [ms], and whether the previous animation frame was drawn. */
   onDrawn: (at: number, follows: boolean) => void = () => undefined;
+  private firstMargin = kFirstMargin;
   /** The box in the initial view; undefined after the user has rotated it. */
   private framed: Box3 | undefined = new Box3();
 
@@ -127,7 +131,7 @@ export class Stage {
 
   private showFramed(): void {
     if (!this.framed || this.framed.isEmpty()) return;
-    const { target, distance } = fitBox(this.framed, kFirstView, this.camera, kFirstMargin);
+    const { target, distance } = fitBox(this.framed, kFirstView, this.camera, this.firstMargin);
     this.camera.position.copy(target).addScaledVector(kFirstView, distance);
     this.camera.near = distance / 100;
     this.camera.far = distance * 20;
@@ -144,9 +148,19 @@ export class Stage {
     if (clientWidth === 0 || clientHeight === 0) return;
     this.renderer.setSize(clientWidth, clientHeight, false);
     this.camera.aspect = clientWidth / clientHeight;
-    this.camera.updateProjectionMatrix();
+    this.reserve(clientWidth, clientHeight);
     this.showFramed();
     this.invalidate();
+  }
+
+  /** Centres the picture above the controls that the style sheet places over its lower edge. */
+  private reserve(width: number, height: number): void {
+    const style = getComputedStyle(this.canvas).getPropertyValue('--reserved-bottom');
+    const reserved = Math.min(parseFloat(style) || 0, height / 2);
+    this.firstMargin = (kFirstMargin * height) / (height - reserved);
+    if (reserved > 0) this.camera.setViewOffset(width, height, 0, reserved / 2, width, height);
+    else this.camera.clearViewOffset();
+    this.camera.updateProjectionMatrix();
   }
 
   private draw(): void {
@@ -162,6 +176,7 @@ export class Stage {
 
   private drawNow(): void {
     const { renderer, scene, camera, fluidLook: look } = this;
+    this.sunShadow?.draw(renderer, scene);
     if (look && this.style === 'fluid') {
       this.fluid.draw(renderer, scene, camera, look);
       return;

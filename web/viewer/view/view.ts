@@ -8,6 +8,7 @@ import { Pace } from './base/pace';
 import type { ViewSettings } from './base/settings';
 import { linkedSettings, SettingsStore } from './base/settings_store';
 import { sharedUniforms } from './bodies/shared_uniforms';
+import type { SunShadow } from './shadow/sun_shadow';
 import { Stage } from './stage';
 import { readTheme, watchTheme } from './base/theme';
 import { World } from './world';
@@ -33,6 +34,7 @@ export class View {
   private readonly shared = sharedUniforms();
   private readonly pace = new Pace();
   private readonly listeners: ((words: string[]) => void)[] = [];
+  private sunShadow: SunShadow | undefined;
   private isSlow = false;
   private style: LiquidStyle = 'splats';
   private phase = 1;
@@ -55,6 +57,23 @@ export class View {
     this.paint();
     watchTheme(() => this.paint());
     this.settings.subscribe(() => this.apply());
+    void this.loadSolids();
+  }
+
+  /** Loads the part that draws solids by their shapes. */
+  private async loadSolids(): Promise<void> {
+    const { solidOf, SunShadow, floorShadow } = await import('./solids/solid_drawing');
+    const { floor, look, sun } = this.shared;
+    this.stage.sunShadow = this.sunShadow = new SunShadow(
+      sun,
+      look.phase,
+      this.stage.graphics.isSoftware,
+    );
+    this.sunShadow.fit(this.world.extent);
+    this.world.group.add(floorShadow(floor, sun));
+    this.world.solidMaker = solidOf;
+    this.stage.canvas.dataset.solids = 'shapes';
+    this.stage.invalidate();
   }
 
   describe(description: SessionDescription): void {
@@ -68,6 +87,8 @@ export class View {
   show(frame: Frame): boolean {
     if (!this.world.show(frame)) return false;
     this.scale.settle();
+    this.sunShadow?.fit(this.world.extent);
+    this.sunShadow?.invalidate();
     this.clip(this.settings.settings);
     this.stage.invalidate();
     return true;
@@ -77,6 +98,7 @@ export class View {
   move(now: number): void {
     const phase = this.motion.phaseAt(now);
     if (phase !== this.phase || phase < 1) this.stage.invalidate();
+    if (phase !== this.phase) this.sunShadow?.invalidate();
     this.phase = this.world.phase = phase;
   }
 
@@ -99,6 +121,7 @@ export class View {
   }
 
   private apply(): void {
+    this.sunShadow?.invalidate();
     const { settings } = this.settings;
     const { graphics } = this.stage;
     const particles = this.world.liquidParticles;

@@ -16,17 +16,17 @@ import { kQuantities, quantityOf } from './colour/quantity';
 import type { Range } from './colour/range';
 import type { FluidLook } from './fluid/fluid_pass';
 import type { Footprint } from './base/footprint';
+import { absorptionLengthOf, lookOf } from './base/appearance';
+import type { Look } from './base/appearance';
 import { Ground } from './base/ground';
 import type { Theme } from './base/theme';
 import { Marks } from './marks/marks';
 import type { LiquidStyle } from './base/liquid_style';
 import type { Choice } from './base/settings';
 import type { SharedUniforms } from './bodies/shared_uniforms';
+import type { SolidMaker } from './solids/solid_of';
 import { Workshop } from './surface/workshop';
 import { VatView } from './vat_view';
-
-/** The depth with full colour, relative to the vat's smallest width. */
-const kClarity = 0.6;
 
 /** A particle under the pointer. */
 export interface Picked {
@@ -50,12 +50,16 @@ export class World {
   private bodies = new Map<number, BodyView>();
   private vat: VatView | undefined;
   private description: SessionDescription | undefined;
+  private looks: ReadonlyMap<string, Look> = new Map();
+  /** See FluidLook. */
+  private clarity = 1;
   /** The union of the vat's positions or, without a vat, the initial extent of the bodies. */
   private seen = new Box3();
   private style: LiquidStyle = 'splats';
-  private solids: Choice<'solids'> = 'particles';
-  private colouring: Choice<'colour'> = 'body';
+  private solids: Choice<'solids'> = 'shape';
+  private colouring: Choice<'colour'> = 'material';
   private readonly workshop = new Workshop();
+  private makeSolid: SolidMaker | undefined;
   /** Called after changes between frames. */
   onChange: () => void = () => undefined;
   /** Time of the last frame [s]. */
@@ -72,6 +76,12 @@ export class World {
     this.paint(look);
   }
 
+  /** Draws solids by their shapes from now on. */
+  set solidMaker(make: SolidMaker) {
+    this.makeSolid = make;
+    for (const view of this.bodies.values()) view.addSolid(make);
+  }
+
   /** Shows a description. Bodies of the same scene remain visible until the next frame. */
   describe(description: SessionDescription): void {
     const { session, scene, vat } = description;
@@ -82,6 +92,9 @@ export class World {
       JSON.stringify(vat) === JSON.stringify(before.vat);
     if (!isSame) this.clear();
     this.description = description;
+    this.looks = new Map(
+      description.materials.map(({ name, appearance }) => [name, lookOf(appearance)]),
+    );
     this.time = undefined;
     const old = this.bodies;
     this.bodies = new Map();
@@ -96,19 +109,27 @@ export class World {
       this.moveVat([0, 0, 0]);
       this.ground.fit(this.seen);
     }
+    this.measureClarity();
     this.marks.describe([...this.bodies.values()], this.height);
   }
 
   /** Returns the existing view if it can show the body. */
   private viewOf(body: BodyDescription, nth: number, old: BodyView | undefined): BodyView {
+    const look = this.lookOf(body);
+    const { tearing_strain: tearingStrain } =
+      this.description!.materials.find(({ name }) => name === body.material) ?? {};
     if (old?.isOf(body, nth)) {
       old.rest();
+      old.look = look;
+      old.tearingStrain = tearingStrain;
       return old;
     }
-    const view = new BodyView(body, nth, this.shared, this.workshop, () => this.onChange());
+    const view = new BodyView(body, nth, look, this.shared, this.workshop, () => this.onChange());
+    view.tearingStrain = tearingStrain;
     view.liquidStyle = this.style;
     view.colour = this.colouring;
     view.solidStyle = this.solids;
+    if (this.makeSolid) view.addSolid(this.makeSolid);
     this.group.add(view.group);
     return view;
   }
@@ -228,19 +249,34 @@ export class World {
 
   /** The number of liquid particles. */
   get liquidParticles(): number {
-    return [...this.bodies.values()]
-      .filter(({ description }) => description.kind === 'liquid')
-      .reduce((sum, { count }) => sum + count, 0);
+    return this.liquids.reduce((sum, { count }) => sum + count, 0);
   }
 
   /** The appearance of the scene's liquids; undefined without liquids. */
   get fluid(): FluidLook | undefined {
-    const { vat, bodies = [] } = this.description ?? {};
-    const radii = bodies.filter(({ kind }) => kind === 'liquid').map(({ radius }) => radius);
+    const radii = this.liquids.map(({ description }) => description.radius);
     if (radii.length === 0) return undefined;
-    const radius = Math.max(...radii);
-    const size = vat ? Math.min(...vat.max.map((most, q) => most - vat.min[q]!)) : 20 * radius;
-    return { radius, clarity: kClarity * size, paint: 0 };
+    return { radius: Math.max(...radii), clarity: this.clarity, paint: 0 };
+  }
+
+  private lookOf({ material }: BodyDescription): Look {
+    return this.looks.get(material) ?? lookOf(undefined);
+  }
+
+  private get liquids(): BodyView[] {
+    return [...this.bodies.values()].filter(({ description }) => description.kind === 'liquid');
+  }
+
+  /** Sets the reference of absorption, the length of the darkest liquid, and relative values. */
+  private measureClarity(): void {
+    const { vat } = this.description!;
+    const widths = vat?.max.map((most, q) => most - vat.min[q]!);
+    const lengths = this.liquids.map(({ description }) => {
+      const width = widths ? Math.min(...widths) : 20 * description.radius;
+      return absorptionLengthOf(this.lookOf(description), width);
+    });
+    this.clarity = Math.min(...lengths);
+    this.liquids.forEach((view, i) => (view.density = this.clarity / lengths[i]!));
   }
 
   private moveVat(offset: Vector): void {

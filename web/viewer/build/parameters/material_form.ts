@@ -1,5 +1,6 @@
-import type { Scene, SceneMaterial } from '../../../client/index';
+import type { MaterialDescription, Scene, SceneMaterial } from '../../../client/index';
 import { make } from '../../panel/elements';
+import { AppearanceForm } from './appearance_form';
 import { fieldsOf, valueAt, withValue } from './material_fields';
 import type { Change, ParameterForm } from './parameter_form';
 import { ValueField } from './value_field';
@@ -9,15 +10,24 @@ export class MaterialForm implements ParameterForm {
   readonly element: HTMLElement;
   private readonly picker = make('select', { id: 'material', ariaLabel: 'Material' });
   private readonly rows = make('div');
+  private readonly appearance = new AppearanceForm((material) => this.change({ material }));
   private fields: ValueField[] = [];
   /** The material and constants of the displayed fields. */
   private shown = '';
   private materials: readonly SceneMaterial[] = [];
   private initial: readonly SceneMaterial[] = [];
   private isEnabled = false;
+  private described: readonly MaterialDescription[] = [];
 
   constructor(private readonly change: Change<'world.set_material'>) {
-    this.element = make('div', {}, make('h3', {}, 'Materials'), this.picker, this.rows);
+    this.element = make(
+      'div',
+      {},
+      make('h3', {}, 'Materials'),
+      this.picker,
+      this.rows,
+      this.appearance.element,
+    );
     this.picker.addEventListener('change', () => this.write());
   }
 
@@ -25,6 +35,13 @@ export class MaterialForm implements ParameterForm {
     this.isEnabled = enabled;
     this.picker.disabled = !enabled;
     for (const field of this.fields) field.enable(enabled);
+    this.appearance.enable(enabled);
+  }
+
+  /** Receives the appearances that are drawn. */
+  describe(materials: readonly MaterialDescription[]): void {
+    this.described = materials;
+    this.write();
   }
 
   show(scene: Scene, initial: Scene): void {
@@ -58,6 +75,8 @@ export class MaterialForm implements ParameterForm {
     specs.forEach(({ path }, i) => {
       this.fields[i]!.show(valueAt(material, path), first && valueAt(first, path));
     });
+    const drawn = this.described.find(({ name }) => name === material.name);
+    this.appearance.show(material, first, drawn?.appearance);
     this.enable(this.isEnabled);
   }
 

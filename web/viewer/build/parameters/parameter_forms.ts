@@ -1,4 +1,4 @@
-import type { MethodName, Params, Scene } from '../../../client/index';
+import type { MethodName, Params, Scene, SessionDescription } from '../../../client/index';
 import { element } from '../../panel/elements';
 import { attempt } from '../../panel/desk';
 import type { Desk } from '../../panel/desk';
@@ -11,6 +11,9 @@ import type { SceneDocument } from '../scene_document';
 /** The forms for materials, interfaces and steps, with units, ranges and reset. */
 export class ParameterForms {
   private readonly section = element('parameters-details', HTMLDetailsElement);
+  private readonly materials = new MaterialForm((params) =>
+    this.change('world.set_material', params),
+  );
   private readonly forms: readonly ParameterForm[];
   private initial: Scene | undefined;
   private isEnabled = false;
@@ -20,7 +23,7 @@ export class ParameterForms {
     private readonly document: SceneDocument,
   ) {
     this.forms = [
-      new MaterialForm((params) => this.change('world.set_material', params)),
+      this.materials,
       new InterfaceForm((params) => this.change('world.set_interface', params)),
       new NumericsForm((params) => this.change('world.set_numerics', params)),
     ];
@@ -34,8 +37,9 @@ export class ParameterForms {
   }
 
   /** `isNew`: another scene or session, or an earlier time of the same. */
-  describe(isNew: boolean): void {
+  describe(description: SessionDescription, isNew: boolean): void {
     if (isNew) this.initial = undefined;
+    this.materials.describe(description.materials);
     void this.look();
   }
 

@@ -1,4 +1,4 @@
-/** The layers of the camera. All except the first two contain liquids. */
+/** The layers of the camera. */
 export const kLayers = {
   /** Objects that a liquid covers or refracts. */
   scene: 0,
@@ -7,4 +7,6 @@ export const kLayers = {
   splats: 2,
   fluidDepth: 3,
   fluidThickness: 4,
+  /** Bodies that cast shadows; they are in the scene too. */
+  casters: 5,
 };

@@ -10,8 +10,8 @@ export const kChoices = {
   /** `auto`: the best style that this machine draws fast enough. */
   liquid: ['auto', 'fluid', 'surface', 'splats', 'particles'],
   /** Style of deformable and rigid bodies. */
-  solids: ['particles', 'skin', 'both'],
-  colour: ['body', 'kind', 'speed', 'density', 'pressure', 'force'],
+  solids: ['shape', 'skin', 'particles', 'both'],
+  colour: ['material', 'body', 'kind', 'speed', 'density', 'pressure', 'force'],
   map: ['viridis', 'cividis', 'turbo', 'blue-red'],
   /** The axis of the clip plane at `clipAt`. */
   clip: ['off', 'x', 'y', 'z'],

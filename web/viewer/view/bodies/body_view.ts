@@ -2,6 +2,7 @@ import { Group, Matrix4, Mesh, Vector3 } from 'three';
 import type { Box3, Ray, ShaderMaterial } from 'three';
 import { BodyKind } from '../../../client/index';
 import type { BodyDescription, FrameHeader, GridBlock, PoseBlock } from '../../../client/index';
+import type { Look } from '../base/appearance';
 import { nearestSphere } from '../base/pick';
 import type { Hit } from '../base/pick';
 import { kNoValue } from '../colour/maps';
@@ -19,6 +20,8 @@ import { ParticleColumns } from '../particles/particle_columns';
 import { RigidMotion } from '../particles/rigid_motion';
 import type { Choice } from '../base/settings';
 import { shadowMaterial } from '../particles/shadow_material';
+import type { SolidSurface } from '../solids/solid';
+import type { SolidMaker } from '../solids/solid_of';
 import type { SharedUniforms } from './shared_uniforms';
 import { sphereMaterial } from '../particles/sphere_material';
 import { Skin } from '../surface/skin';
@@ -28,15 +31,15 @@ import { splatDepthMaterial, splatMaterial } from '../particles/splat_material';
 /** Draw order: shadows on the floor, then solids. Liquids draw the depth before the splats. */
 const kOrder = { shadow: 1, solid: 2, splatDepth: 1, splat: 2, skin: 3 };
 
-/** Skins. If particles are shown too, skins are transparent and enclose the spheres. */
-const kSkins = {
-  liquid: { wet: 1, opacity: 0.82, size: 1.5 },
-  deformable: { wet: 0.15, opacity: 1, size: 1.2 },
-  rigid: { wet: 0.35, opacity: 1, size: 1.2 },
-};
+/** Sizes of skins; see SurfaceJob. If particles are shown too, skins enclose the spheres. */
+const kSkinSizes = { liquid: 1.5, deformable: 1.2, rigid: 1.2 };
+/** The opacity of the surface of a perfectly clear liquid. */
+const kLeastOpacity = 0.6;
+/** Radius of the spheres that the pointer hits / particle radius. They cover a surface. */
+const kReach = 1.42;
+/** Distributes the variants of bodies evenly. */
+const kGoldenRatio = 0.618034;
 const kVeil = { opacity: 0.4, size: 1.7 };
-
-const kGloss = { liquid: 0.6, deformable: 0.1, rigid: 0.35 };
 
 /**
  * The particles of one body. The group's matrix converts their coordinates to world axes: quanta for
@@ -52,17 +55,29 @@ export class BodyView {
   private readonly materials: ShaderMaterial[] = [];
   /** The meshes of a liquid, with their styles. */
   private readonly styles: { mesh: Mesh; style: LiquidStyle }[] = [];
-  private colouring: Choice<'colour'> = 'body';
+  private colouring: Choice<'colour'> = 'material';
+  /** Soft shadows on the floor below particles. */
+  private readonly spots: Mesh;
   private readonly spheres: Mesh;
   private readonly skin: Skin;
+  /** The surface of a solid with a known shape. */
+  private solid: SolidSurface | undefined;
+  private solidStyleNow: Choice<'solids'> = 'shape';
+  /** The strain at which links of a deformable body tear; undefined: they do not. */
+  tearingStrain: number | undefined;
   private values: Float32Array | undefined;
+  /** Simulated time of the newest frame [s]. */
+  private time = 0;
   private hasSkin = false;
+  /** Whether the skin is transparent, so that particles are visible. */
+  private isVeiled = false;
   /** See SurfaceJob. */
   private skinSize: number;
 
   constructor(
     readonly description: BodyDescription,
     private readonly nthOfKind: number,
+    private appearance: Look,
     private readonly shared: SharedUniforms,
     workshop: Workshop,
     onChange: () => void,
@@ -73,14 +88,31 @@ export class BodyView {
     this.uniforms = bodyUniforms(bodyColour(kind, nthOfKind), shared.look, !this.motion);
     this.group.matrixAutoUpdate = false;
     this.group.visible = false; // until the first frame
-    this.add(shadowMaterial(radius, shared.floor, this.uniforms), kOrder.shadow);
-    const gloss = sphereMaterial(this.uniforms, radius, kGloss[kind]);
-    this.spheres = this.add(gloss, kOrder.solid);
-    this.skin = new Skin(workshop, this.uniforms, kSkins[kind], onChange);
-    this.skinSize = kSkins[kind].size;
+    this.spots = this.add(shadowMaterial(radius, shared.floor, this.uniforms), kOrder.shadow);
+    this.spheres = this.add(sphereMaterial(this.uniforms, radius), kOrder.solid);
+    this.skin = new Skin(workshop, this.uniforms, onChange);
+    this.skinSize = kSkinSizes[kind];
     this.skin.mesh.renderOrder = kOrder.skin;
     this.group.add(this.skin.mesh);
     if (kind === 'liquid') this.addLiquid();
+    this.uniforms.variant.value = (nthOfKind * kGoldenRatio) % 1;
+    this.look = appearance;
+  }
+
+  /** Sets the appearance of the material. */
+  set look(look: Look) {
+    this.appearance = look;
+    const { uniforms } = this;
+    uniforms.roughness.value = look.roughness;
+    uniforms.metalness.value = look.metalness;
+    if (this.solid) this.solid.finish = look.finish;
+    if (uniforms.colour_source.value === kColourSource.body) this.showColour(kColourSource.body);
+    this.showOpacity();
+  }
+
+  /** Of a liquid: its absorption relative to the reference of the scene. */
+  set density(density: number) {
+    this.uniforms.density.value = density;
   }
 
   get count(): number {
@@ -94,14 +126,27 @@ export class BodyView {
     return isSame && radius === description.radius && nthOfKind === this.nthOfKind;
   }
 
+  /** Adds the surface of a solid. Until then, its particles are visible. */
+  addSolid(make: SolidMaker): void {
+    if (this.solid) return;
+    const solid = make(this.description, this.uniforms, this.shared);
+    if (!solid) return;
+    this.solid = solid;
+    this.look = this.appearance;
+    solid.mesh.renderOrder = kOrder.solid;
+    this.group.add(solid.mesh);
+    this.solidStyle = this.solidStyleNow;
+  }
+
   /** Ends the interpolation: the next frame does not continue the motion. */
   rest(): void {
+    this.solid?.rest?.();
     this.columns.rest();
     this.motion?.rest();
   }
 
   /** Shows particles. See ParticleColumns.show() for the lifetime of the block. */
-  showGrid(block: GridBlock, { origin, quantum, attributeQuanta }: FrameHeader): void {
+  showGrid(block: GridBlock, { origin, quantum, attributeQuanta, time }: FrameHeader): void {
     this.columns.show(block, { origin, quantum });
     const name = quantityOf(this.colouring);
     const column = name && kQuantities[name].column;
@@ -111,12 +156,14 @@ export class BodyView {
       this.uniforms.value_quantum.value = attributeQuanta[column]!;
     }
     const scale = this.uniforms.value_quantum.value;
-    const isSkinned = this.skin.mesh.visible;
-    this.values = isSkinned && values ? Float32Array.from(values, (v) => v * scale) : undefined;
+    const hasSurface = this.skin.mesh.visible || this.solid?.mesh.visible === true;
+    this.values = hasSurface && values ? Float32Array.from(values, (v) => v * scale) : undefined;
     this.showColour(values ? kColourSource.column : kColourSource.body);
     this.group.matrix.makeScale(quantum, quantum, quantum).setPosition(...origin);
     this.shown();
+    this.time = time;
     this.updateSkin();
+    this.updateSolid();
   }
 
   /** Shows a pose, `seconds` after the previous one. */
@@ -165,7 +212,8 @@ export class BodyView {
     const local = ray.clone().applyMatrix4(new Matrix4().copy(this.group.matrix).invert());
     local.direction.normalize();
     const places = this.columns.coordinates(this.uniforms.phase.value);
-    const hit = nearestSphere(local, places, this.description.radius / scale);
+    const reach = this.solid?.mesh.visible ? kReach : 1;
+    const hit = nearestSphere(local, places, (reach * this.description.radius) / scale);
     if (!hit) return undefined;
     return { particle: this.columns.numberAt(hit.particle), distance: hit.distance * scale };
   }
@@ -225,6 +273,7 @@ export class BodyView {
     this.group.removeFromParent();
     this.columns.dispose();
     this.skin.dispose();
+    this.solid?.dispose();
     for (const material of this.materials) material.dispose();
   }
 
@@ -238,13 +287,27 @@ export class BodyView {
   set solidStyle(chosen: Choice<'solids'>) {
     const { kind } = this.description;
     if (kind === 'liquid') return;
-    this.spheres.visible = chosen !== 'skin';
-    this.skin.mesh.visible = chosen !== 'particles';
-    const veil = chosen === 'both' ? kVeil : kSkins[kind];
-    this.skin.opacity = veil.opacity;
-    this.skinSize = veil.size;
+    this.solidStyleNow = chosen;
+    const hasShape = chosen === 'shape' && this.solid !== undefined;
+    this.spheres.visible = chosen !== 'skin' && !hasShape;
+    this.spots.visible = !hasShape; // shapes are in the shadow map
+    this.skin.mesh.visible = chosen === 'skin' || chosen === 'both';
+    if (this.solid) this.solid.mesh.visible = hasShape;
+    this.solid?.rest?.();
+    this.updateSolid();
+    this.isVeiled = chosen === 'both';
+    this.showOpacity();
+    this.skinSize = this.isVeiled ? kVeil.size : kSkinSizes[kind];
     this.hasSkin = false;
     this.updateSkin();
+  }
+
+  private showOpacity(): void {
+    const { opacity } = this.appearance;
+    const isLiquid = this.description.kind === 'liquid';
+    const shown = isLiquid ? kLeastOpacity + (1 - kLeastOpacity) * opacity : opacity;
+    if (this.solid) this.solid.opacity = opacity;
+    this.skin.opacity = this.isVeiled ? kVeil.opacity : shown;
   }
 
   /** Updates the skin. A rigid body's skin moves with it; others are made anew. */
@@ -257,13 +320,23 @@ export class BodyView {
     this.skin.follow({ places, radius, values: this.values, size: this.skinSize });
   }
 
+  /** Moves the surface of a deformable body to the newest particles. */
+  private updateSolid(): void {
+    if (!this.solid?.mesh.visible || !this.group.visible) return;
+    const { columns, time, tearingStrain, values } = this;
+    const quantum = this.group.matrix.getMaxScaleOnAxis();
+    this.solid.follow?.({ columns, quantum, time, tearingStrain, values });
+  }
+
   /** Sets the source of colours. Particles without a value are grey. */
   private showColour(source: number): void {
     const { kind } = this.description;
     this.uniforms.colour_source.value = source;
     const isOfNumbers = quantityOf(this.colouring) !== undefined;
-    const nth = this.colouring === 'kind' ? 0 : this.nthOfKind;
-    this.uniforms.colour.value.copy(isOfNumbers ? kNoValue : bodyColour(kind, nth));
+    const { value } = this.uniforms.colour;
+    if (isOfNumbers) value.copy(kNoValue);
+    else if (this.colouring === 'material') value.copy(this.appearance.colour);
+    else value.copy(bodyColour(kind, this.colouring === 'kind' ? 0 : this.nthOfKind));
   }
 
   private addLiquid(): void {

@@ -1,3 +1,5 @@
+import { sunUniforms } from '../base/sun_uniforms';
+import type { SunUniforms } from '../base/sun_uniforms';
 import { behindUniforms } from '../fluid/fluid_pass';
 import type { BehindUniforms } from '../fluid/fluid_pass';
 import { lookUniforms } from '../colour/look_uniforms';
@@ -10,8 +12,14 @@ export interface SharedUniforms {
   floor: FloorUniforms;
   behind: BehindUniforms;
   look: LookUniforms;
+  sun: SunUniforms;
 }
 
 export function sharedUniforms(): SharedUniforms {
-  return { floor: floorUniforms(), behind: behindUniforms(), look: lookUniforms() };
+  return {
+    floor: floorUniforms(),
+    behind: behindUniforms(),
+    look: lookUniforms(),
+    sun: sunUniforms(),
+  };
 }

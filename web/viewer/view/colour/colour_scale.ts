@@ -55,7 +55,7 @@ export class ColourScale {
   }
 
   private show(): void {
-    const { colour = 'body', map = 'viridis', from, to } = this.settings ?? {};
+    const { colour = 'material', map = 'viridis', from, to } = this.settings ?? {};
     const { min, max } = this.auto.range;
     const isFixed = from !== undefined && to !== undefined && from < to;
     const range = isFixed ? { min: from, max: to } : { min, max };

@@ -25,7 +25,7 @@ const kThickness = /* glsl */ `
     float eye_depth = projectionMatrix[3][2] / (2.0 * window_depth - 1.0 + projectionMatrix[2][2]);
     float before = eye_depth / -ray.z;
     float through = clamp(before - (along - half_way), 0.0, 2.0 * half_way);
-    sum = vec4(base, 1.0) * share * through;
+    sum = vec4(base, 1.0) * share * density * through;
   }
 `;
 
@@ -48,7 +48,7 @@ export function fluidThicknessMaterial(
   return new ShaderMaterial({
     glslVersion: GLSL3,
     vertexShader: kImpostorVertexShader,
-    fragmentShader: `out vec4 sum;\nuniform sampler2D behind_depth;\nuniform vec2 texel;\nuniform float share;\n${kImpostorHit}${kThickness}`,
+    fragmentShader: `out vec4 sum;\nuniform sampler2D behind_depth;\nuniform vec2 texel;\nuniform float share;\nuniform float density;\n${kImpostorHit}${kThickness}`,
     uniforms: { ...body, ...behind, radius: { value: kSize * radius }, share: { value: kShare } },
     depthTest: false,
     depthWrite: false,

@@ -14,6 +14,12 @@ export const kColourSource = {
 /** The uniforms of one body, shared by its materials. */
 export interface BodyUniforms extends LookUniforms {
   colour: IUniform<Color>;
+  roughness: IUniform<number>;
+  metalness: IUniform<number>;
+  /** A number that differs between bodies, 0 to 1. */
+  variant: IUniform<number>;
+  /** Of a liquid: absorption relative to the scene's reference; see FluidLook.clarity. */
+  density: IUniform<number>;
   colour_source: IUniform<number>;
   value_quantum: IUniform<number>;
   /** Rigid bodies: velocity of the centre [m/s] and angular velocity [rad/s], world axes. */
@@ -27,6 +33,10 @@ export function bodyUniforms(colour: Color, look: LookUniforms, moves: boolean):
     ...look,
     ...(moves ? {} : { phase: { value: 1 } }),
     colour: { value: colour.clone() },
+    roughness: { value: 0.5 },
+    metalness: { value: 0 },
+    variant: { value: 0 },
+    density: { value: 1 },
     colour_source: { value: kColourSource.body },
     value_quantum: { value: 1 },
     linear: { value: new Vector3() },

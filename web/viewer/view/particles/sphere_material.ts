@@ -16,6 +16,7 @@ const kShade = /* glsl */ `
     vec3 sky = mix(vec3(0.42, 0.40, 0.40), vec3(0.80, 0.84, 0.90), 0.5 + 0.5 * n.z);
     float sun = max(0.25 + 0.75 * dot(n, ${kSun}), 0.0);
     float crevice = mix(0.45, 1.0, smoothstep(0.0, 0.75, facing));
+    float gloss = 1.0 - roughness;
     float shine = pow(max(dot(n, normalize(eye + ${kSun})), 0.0), mix(24.0, 90.0, gloss));
 
     vec3 light = base * (sky + 0.62 * sun) * crevice + mix(0.10, 0.65, gloss) * shine;
@@ -24,12 +25,12 @@ const kShade = /* glsl */ `
   }
 `;
 
-/** Shaded spheres of this radius [m]; gloss: 0 matt, 1 wet. */
-export function sphereMaterial(body: BodyUniforms, radius: number, gloss: number): ShaderMaterial {
+/** Shaded spheres of this radius [m]. */
+export function sphereMaterial(body: BodyUniforms, radius: number): ShaderMaterial {
   return new ShaderMaterial({
     vertexShader: kImpostorVertexShader,
-    fragmentShader: `uniform float gloss;\n${kImpostorHit}${kShade}`,
-    uniforms: { ...body, radius: { value: radius }, gloss: { value: gloss } },
+    fragmentShader: `uniform float roughness;\n${kImpostorHit}${kShade}`,
+    uniforms: { ...body, radius: { value: radius } },
     alphaToCoverage: true,
   });
 }

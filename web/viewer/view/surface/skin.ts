@@ -3,7 +3,6 @@ import type { ShaderMaterial } from 'three';
 import type { BodyUniforms } from '../particles/impostor';
 import type { Surface } from './marching_cubes';
 import { skinMaterial } from './skin_material';
-import type { SkinLook } from './skin_material';
 import type { SurfaceJob, Workshop } from './workshop';
 
 type Job = Omit<SurfaceJob, 'key'>;
@@ -19,10 +18,9 @@ export class Skin {
   constructor(
     private readonly workshop: Workshop,
     uniforms: BodyUniforms,
-    look: SkinLook,
     private readonly onMade: () => void,
   ) {
-    this.mesh = new Mesh(new BufferGeometry(), skinMaterial(uniforms, look));
+    this.mesh = new Mesh(new BufferGeometry(), skinMaterial(uniforms));
     this.mesh.frustumCulled = false;
     this.mesh.visible = false;
   }

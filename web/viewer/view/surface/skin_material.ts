@@ -39,11 +39,12 @@ const kFragmentShader = /* glsl */ `
   in vec3 outward;
   in vec3 base;
   uniform vec4 clip_plane;
-  uniform float wet;
+  uniform float roughness;
   uniform float opacity;
 
   void main() {
     if (dot(clip_plane.xyz, world_point) > clip_plane.w) discard;
+    float wet = 1.0 - roughness;
     vec3 n = normalize(outward) * (gl_FrontFacing ? 1.0 : -1.0);
     vec3 eye = normalize(cameraPosition - world_point);
     vec3 bounced = reflect(-eye, n);
@@ -60,18 +61,12 @@ const kFragmentShader = /* glsl */ `
   }
 `;
 
-export interface SkinLook {
-  /** Gloss: 0 matt, 1 liquid. */
-  wet: number;
-  opacity: number;
-}
-
 /** Returns the material of surfaces around a body's particles. */
-export function skinMaterial(body: BodyUniforms, { wet, opacity }: SkinLook): ShaderMaterial {
+export function skinMaterial(body: BodyUniforms): ShaderMaterial {
   return new ShaderMaterial({
     vertexShader: kVertexShader,
     fragmentShader: kFragmentShader,
-    uniforms: { ...body, wet: { value: wet }, opacity: { value: opacity } },
+    uniforms: { ...body, opacity: { value: 1 } },
     side: DoubleSide,
     transparent: true,
   });

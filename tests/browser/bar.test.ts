@@ -1,0 +1,53 @@
+import { expect, it } from 'vitest';
+import { Visits } from './support/visits';
+
+/** The slim bar over the picture at the first visit, and the panel that it extends to. */
+const visits = new Visits();
+
+const kFresh = { viewport: { width: 1000, height: 640 }, hasBar: true };
+
+const widthOf = async (id: string): Promise<number> =>
+  (await visits.viewer.page.locator(id).boundingBox())!.width;
+
+it('shows the picture on the whole page, with one slim bar', async () => {
+  await visits.visit('rigid-stack', kFresh);
+  const { page } = visits.viewer;
+  expect(await widthOf('#view')).toBe(1000);
+  const bar = (await page.locator('#panel').boundingBox())!;
+  expect(bar.height).toBeLessThan(64);
+  expect(bar.x).toBeGreaterThanOrEqual(0);
+  expect(bar.x + bar.width).toBeLessThanOrEqual(1000);
+  for (const id of ['#play', '#step', '#reset', '#scene', '#gallery-open', '#sheet']) {
+    const box = (await page.locator(id).boundingBox())!;
+    expect(box.x, id).toBeGreaterThanOrEqual(bar.x);
+    expect(box.x + box.width, id).toBeLessThanOrEqual(bar.x + bar.width);
+  }
+  expect(await page.isVisible('#sections')).toBe(false);
+});
+
+it('extends to the panel by one click, also at the next visit', async () => {
+  await visits.visit('rigid-stack', kFresh);
+  const { page } = visits.viewer;
+  await page.click('#sheet');
+  await page.waitForSelector('#view-details > summary', { state: 'visible' });
+  expect(await widthOf('#view')).toBe(660);
+  await page.reload();
+  await page.waitForSelector('#sheet[aria-expanded="true"]');
+  expect(await page.isVisible('#sections')).toBe(true);
+  await page.click('#sheet');
+  await page.waitForSelector('#sections', { state: 'hidden' });
+  expect(await widthOf('#view')).toBe(1000);
+});
+
+it('has no controls beyond the edges of a narrow page', async () => {
+  await visits.visit('rigid-stack', { ...kFresh, viewport: { width: 770, height: 600 } });
+  const { page } = visits.viewer;
+  const boxes = await page
+    .locator('#panel :is(button, select, input)')
+    .evaluateAll((all) => all.map((one) => one.getBoundingClientRect().toJSON() as DOMRect));
+  const shown = boxes.filter(({ width }) => width > 0).sort((a, b) => a.x - b.x);
+  expect(shown.length).toBeGreaterThan(6);
+  shown.forEach(({ x, width }, i) => {
+    expect(x + width).toBeLessThanOrEqual(shown[i + 1]?.x ?? 770); // nor over one another
+  });
+});

@@ -1,0 +1,114 @@
+import { Color, Mesh } from 'three';
+import type { ShaderMaterial } from 'three';
+import { describe, expect, it } from 'vitest';
+import type { Appearance, SessionDescription } from '../../../web/client/index';
+import {
+  kAbsorptionField,
+  kAppearanceFields,
+  withAppearance,
+  withAppearanceOf,
+} from '../../../web/viewer/build/parameters/appearance_fields';
+import { absorptionLengthOf, kFinishes, lookOf } from '../../../web/viewer/view/base/appearance';
+import type { Theme } from '../../../web/viewer/view/base/theme';
+import { sharedUniforms } from '../../../web/viewer/view/bodies/shared_uniforms';
+import { World } from '../../../web/viewer/view/world';
+import format from '../../../protocol/schemas/scene_format.json';
+
+const kNames = ['stage', 'floor', 'shadow', 'grid', 'edge', 'wall', 'mark', 'skyLow', 'skyHigh'];
+const kTheme = Object.fromEntries(kNames.map((name) => [name, new Color()])) as unknown as Theme;
+const kSchema = format.$defs.appearance.properties;
+
+function described(honey: Appearance, water: Appearance): SessionDescription {
+  const body = (id: number, material: string) => ({
+    body: id,
+    name: material,
+    kind: 'liquid' as const,
+    material,
+    particles: 1,
+    radius: 0.01,
+  });
+  return {
+    session: 's1',
+    epoch: 1,
+    tick: 0,
+    name: '',
+    scene: 'pool',
+    title: '',
+    playing: false,
+    speed: 1,
+    tick_seconds: 0.02,
+    gravity: [0, 0, -9.81],
+    vat: { min: [0, 0, 0], max: [2, 1, 3], lid: false },
+    materials: [
+      { name: 'honey', appearance: honey },
+      { name: 'water', appearance: water },
+    ],
+    bodies: [body(1, 'honey'), body(2, 'water')],
+  };
+}
+
+/** Returns the values of a uniform of the world's bodies. */
+function uniformsOf(world: World, name: string): unknown[] {
+  const groups = world.group.children.filter((child) => child.children.length > 3);
+  return groups.map((group) => {
+    const mesh = group.children.find((child) => child instanceof Mesh) as Mesh;
+    return (mesh.material as ShaderMaterial).uniforms[name]!.value as unknown;
+  });
+}
+
+const hex = (colour: unknown): string => `#${(colour as Color).getHexString()}`;
+
+describe('Appearance', () => {
+  it('colours bodies by their material, and follows a change of the material', () => {
+    const world = new World(kTheme, sharedUniforms());
+    world.describe(described({ colour: '#f0a01e', roughness: 0.1 }, { colour: '#4fb4e0' }));
+    expect(uniformsOf(world, 'colour').map(hex)).toEqual(['#f0a01e', '#4fb4e0']);
+    expect(uniformsOf(world, 'roughness')).toEqual([0.1, 0.5]);
+    world.describe(described({ colour: '#102030' }, { colour: '#4fb4e0', roughness: 0.5 }));
+    expect(uniformsOf(world, 'colour').map(hex)).toEqual(['#102030', '#4fb4e0']);
+    expect(uniformsOf(world, 'roughness')).toEqual([0.5, 0.5]);
+    world.colour = 'body';
+    expect(uniformsOf(world, 'colour').map(hex)).not.toContain('#102030');
+  });
+
+  it('relates the absorption of each liquid to that of the darkest', () => {
+    const world = new World(kTheme, sharedUniforms());
+    world.describe(described({ opacity: 0.8 }, { absorption_length: 0.5 }));
+    expect(world.fluid!.clarity).toBeCloseTo(0.25); // the vat's smallest width × (1.05 - 0.8)
+    const [honey, water] = uniformsOf(world, 'density') as number[];
+    expect(honey).toBeCloseTo(1);
+    expect(water).toBeCloseTo(0.5);
+  });
+
+  it('gives even opaque liquids an absorption length', () => {
+    expect(absorptionLengthOf(lookOf({ opacity: 1 }), 2)).toBeCloseTo(0.1);
+    expect(absorptionLengthOf(lookOf({ opacity: 1, absorption_length: 3 }), 2)).toBe(3);
+  });
+
+  it('has the finishes and the ranges of the schema', () => {
+    expect(kSchema.finish.enum).toEqual([...kFinishes]);
+    for (const { name, min, max } of kAppearanceFields) {
+      const { minimum, maximum } = kSchema[name] as { minimum: number; maximum: number };
+      expect([min, max]).toEqual([minimum, maximum]);
+    }
+    const { minimum, maximum } = format.$defs.length;
+    expect([kAbsorptionField.min, kAbsorptionField.max]).toEqual([minimum, maximum]);
+  });
+
+  it('is edited member by member, and is absent without members', () => {
+    const wood = { name: 'wood', density: 600 };
+    const red = withAppearance(wood, 'colour', '#ff0000');
+    expect(red).toEqual({ ...wood, appearance: { colour: '#ff0000' } });
+    const matt = withAppearance(red, 'roughness', 1);
+    expect(matt.appearance).toEqual({ colour: '#ff0000', roughness: 1 });
+    expect(withAppearance(matt, 'colour', undefined).appearance).toEqual({ roughness: 1 });
+    expect(withAppearance(red, 'colour', undefined)).toEqual(wood);
+    expect(withAppearanceOf(matt, red)).toEqual(red);
+    expect(withAppearanceOf(matt, wood)).toEqual(wood);
+    expect(wood).toEqual({ name: 'wood', density: 600 });
+  });
+
+  it('is plain if the description has none', () => {
+    expect(lookOf(undefined)).toMatchObject({ metalness: 0, opacity: 1, finish: 0 });
+  });
+});

@@ -1,0 +1,50 @@
+import { Matrix4 } from 'three';
+import type { DepthTexture, IUniform } from 'three';
+import { kSun } from './light';
+
+/** The shadow map of the sun, for the materials that receive shadows. */
+export interface SunUniforms {
+  /** Null until the first shadow map is drawn. */
+  sun_map: IUniform<DepthTexture | null>;
+  /** From world axes to the shadow map, with coordinates from 0 to 1. */
+  to_sun: IUniform<Matrix4>;
+  /** Width of a soft edge, relative to the map. */
+  sun_blur: IUniform<number>;
+  /** Width of a texel of the map [m]. */
+  sun_texel: IUniform<number>;
+  /** Number of samples of the map for a point. */
+  sun_samples: IUniform<number>;
+}
+
+export function sunUniforms(): SunUniforms {
+  return {
+    sun_map: { value: null },
+    to_sun: { value: new Matrix4() },
+    sun_blur: { value: 0.002 },
+    sun_texel: { value: 0 },
+    sun_samples: { value: 8 },
+  };
+}
+
+/** Returns the part of the sun that reaches a point, 0 to 1, in GLSL. `n` is its normal. */
+export const kSunlight = /* glsl */ `
+  uniform mediump sampler2DShadow sun_map;
+  uniform mat4 to_sun;
+  uniform float sun_blur;
+  uniform float sun_texel;
+  uniform int sun_samples;
+
+  float sunlight(vec3 world, vec3 n) {
+    if (sun_texel <= 0.0 || dot(n, ${kSun}) <= 0.0) return 1.0; // the dark side needs no shadow
+    vec3 at = (to_sun * vec4(world + 1.5 * sun_texel * n, 1.0)).xyz;
+    if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
+    float sum = 0.0;
+    for (int i = 0; i < sun_samples; ++i) {
+      float angle = 2.3999632 * float(i);
+      float away = sqrt((float(i) + 0.5) / float(sun_samples));
+      vec2 aside = sun_blur * away * vec2(cos(angle), sin(angle));
+      sum += texture(sun_map, vec3(at.xy + aside, at.z - 0.0015));
+    }
+    return sum / float(sun_samples);
+  }
+`;

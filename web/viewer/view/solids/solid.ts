@@ -1,0 +1,90 @@
+import { BufferAttribute, DoubleSide, FrontSide, Mesh, Vector3 } from 'three';
+import type { Box3, BufferGeometry, ShaderMaterial } from 'three';
+import { kLayers } from '../base/layers';
+import type { BodyUniforms } from '../particles/impostor';
+import type { ParticleColumns } from '../particles/particle_columns';
+import { solidMaterial } from './solid_material';
+import type { Surroundings } from './solid_material';
+
+/** The particles of a frame, for a surface that follows them. */
+export interface ShownParticles {
+  columns: ParticleColumns;
+  /** Length of a unit of the columns [m]. */
+  quantum: number;
+  /** Simulated time of the frame [s]. */
+  time: number;
+  /** The strain at which links tear; undefined: they do not. */
+  tearingStrain: number | undefined;
+  /** The coloured quantity. */
+  values: Float32Array | undefined;
+}
+
+/** The surface of a solid. */
+export interface SolidSurface {
+  readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;
+  /** 0: transparent, 1: opaque. */
+  opacity: number;
+  /** The index in kFinishes. */
+  finish: number;
+  /** Follows the particles of a frame. */
+  follow?(particles: ShownParticles): void;
+  /** Ends the interpolation: the next frame does not continue the motion. */
+  rest?(): void;
+  dispose(): void;
+}
+
+/** A surface of constant form. That of a rigid body moves with the body's group. */
+export class Solid implements SolidSurface {
+  readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;
+
+  /** `box` is the extent of the surface at rest. See withRest() for the geometry. */
+  constructor(
+    geometry: BufferGeometry,
+    box: Box3,
+    uniforms: BodyUniforms,
+    surroundings: Surroundings,
+  ) {
+    this.mesh = new Mesh(geometry, solidMaterial(uniforms, surroundings, box));
+    this.mesh.frustumCulled = false;
+    this.mesh.visible = false;
+    this.mesh.layers.enable(kLayers.casters);
+  }
+
+  get opacity(): number {
+    return this.mesh.material.uniforms.opacity!.value as number;
+  }
+
+  set opacity(opacity: number) {
+    const { material } = this.mesh;
+    material.uniforms.opacity!.value = opacity;
+    material.transparent = opacity < 1;
+    material.side = opacity < 1 ? FrontSide : DoubleSide; // a cut shows the inside
+  }
+
+  get finish(): number {
+    return this.mesh.material.defines.FINISH as number;
+  }
+
+  set finish(finish: number) {
+    const { material } = this.mesh;
+    if (finish === this.finish) return;
+    material.defines.FINISH = finish;
+    material.needsUpdate = true;
+  }
+
+  dispose(): void {
+    this.mesh.geometry.dispose();
+    this.mesh.material.dispose();
+  }
+}
+
+/** Adds the attributes of solidMaterial() to a geometry with positions and normals. */
+export function withRest(geometry: BufferGeometry, box: Box3): BufferGeometry {
+  const positions = geometry.getAttribute('position');
+  const middle = box.getCenter(new Vector3());
+  const rest = geometry.clone().translate(-middle.x, -middle.y, -middle.z);
+  geometry.setAttribute('rest', rest.getAttribute('position'));
+  geometry.setAttribute('before', positions);
+  geometry.setAttribute('amount', new BufferAttribute(new Float32Array(positions.count), 1));
+  return geometry;
+}
