@@ -39,8 +39,8 @@ constexpr std::size_t kMaxMemory = std::size_t{400} << 20;
 constexpr std::int64_t kBallast = std::int64_t{450} << 20;
 constexpr std::int64_t kClockStep = std::int64_t{3600} * 1'000'000'000;  // [ns]
 constexpr std::chrono::minutes kRecoveryPatience{1};
-/// By then the server has released unused memory.
-constexpr std::chrono::milliseconds kRest = MemoryReturn::kInterval + std::chrono::seconds(2);
+/// By then the server has released unused memory after it has closed all connections.
+constexpr std::chrono::milliseconds kRest = 2 * MemoryReturn::kInterval + std::chrono::seconds(2);
 constexpr double kMebibyte = 1 << 20;
 
 /// A line of the result.
