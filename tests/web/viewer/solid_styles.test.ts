@@ -1,4 +1,4 @@
-import { Box3, Vector3 } from 'three';
+import { Box3, Ray, Vector3 } from 'three';
 import type { Mesh } from 'three';
 import { describe, expect, it } from 'vitest';
 import { BodyKind } from '../../../web/client/index';
@@ -140,6 +140,19 @@ describe('The style of solids', () => {
     const torn = solid!.geometry.getAttribute('position').count;
     view.showGrid(blockAt([3, 2, 2, 4, 2, 2]), headerAt(0));
     expect(solid!.geometry.getAttribute('position').count).toBeLessThan(torn);
+  });
+
+  it('is hit by the pointer everywhere on a surface, but only on the spheres of particles', () => {
+    const view = viewOf(kCrate);
+    const pose = { kind: BodyKind.rigid, body: 1, position: [0, 0, 0], orientation: [1, 0, 0, 0] };
+    view.showPose(pose as unknown as PoseBlock, 0.02);
+    view.phase = 1;
+    const edge = new Ray(new Vector3(0.98, 0.48, 5), new Vector3(0, 0, -1));
+    const beside = new Ray(new Vector3(1.3, 0.6, 5), new Vector3(0, 0, -1));
+    expect(view.pick(edge)?.particle).toBe(1);
+    expect(view.pick(beside)).toBeUndefined();
+    view.solidStyle = 'particles';
+    expect(view.pick(edge)).toBeUndefined();
   });
 
   it('has the opacity and the finish of the material', () => {

@@ -35,6 +35,8 @@ const kOrder = { shadow: 1, solid: 2, splatDepth: 1, splat: 2, skin: 3 };
 const kSkinSizes = { liquid: 1.5, deformable: 1.2, rigid: 1.2 };
 /** The opacity of the surface of a perfectly clear liquid. */
 const kLeastOpacity = 0.6;
+/** Radius of the spheres that the pointer hits / particle radius. They cover a surface. */
+const kReach = 1.42;
 /** Distributes the variants of bodies evenly. */
 const kGoldenRatio = 0.618034;
 const kVeil = { opacity: 0.4, size: 1.7 };
@@ -210,7 +212,8 @@ export class BodyView {
     const local = ray.clone().applyMatrix4(new Matrix4().copy(this.group.matrix).invert());
     local.direction.normalize();
     const places = this.columns.coordinates(this.uniforms.phase.value);
-    const hit = nearestSphere(local, places, this.description.radius / scale);
+    const reach = this.solid?.mesh.visible ? kReach : 1;
+    const hit = nearestSphere(local, places, (reach * this.description.radius) / scale);
     if (!hit) return undefined;
     return { particle: this.columns.numberAt(hit.particle), distance: hit.distance * scale };
   }
