@@ -31,7 +31,7 @@ await observer.request('control.pause', {});
 await observer.request('control.reset', {});
 for (let tick = 0; tick < kFirstTick; tick += 10)
   await observer.request('control.step', { ticks: 10 });
-const viewer = await Viewer.open(`${server.url}#view=liquid:fluid,solids:skin`, {
+const viewer = await Viewer.open(`${server.url}#view=liquid:fluid`, {
   viewport: { width: 1000, height: 460 },
   colorScheme: 'light',
 });

@@ -15,6 +15,8 @@ import { compress } from './webp';
 
 const kFolder = fileURLToPath(new URL('../pictures/', import.meta.url));
 const kMostBytes = 40_000;
+/** Ticks of a request, which must be answered in time. */
+const kStep = 10;
 
 const kDesktop: Look = { viewport: { width: 960, height: 600 } };
 const kPhone: Look = { viewport: { width: 390, height: 780 }, hasTouch: true, isMobile: true };
@@ -67,10 +69,21 @@ async function place(viewer: Viewer): Promise<void> {
 
 const kBath = { scene: 'sliding-vat-liquid', ticks: 150 };
 const kPictures: readonly Picture[] = [
-  { name: 'clear-liquid', ...kBath, view: 'liquid:fluid,solids:skin' },
+  { name: 'clear-liquid', ...kBath, view: 'liquid:fluid', look: { ...kDesktop, hasBar: true } },
+  {
+    name: 'bodies',
+    scene: 'sliding-vat-solids',
+    ticks: 60,
+    look: { ...kDesktop, ...dark, hasBar: true },
+  },
   { name: 'surface', ...kBath, view: 'liquid:surface,solids:both', look: { ...kDesktop, ...dark } },
   { name: 'splats', ...kBath, view: 'liquid:splats' },
-  { name: 'particles', ...kBath, view: 'liquid:particles', look: { ...kDesktop, ...dark } },
+  {
+    name: 'particles',
+    ...kBath,
+    view: 'liquid:particles,solids:particles',
+    look: { ...kDesktop, ...dark },
+  },
   {
     name: 'speed',
     scene: 'dam-break',
@@ -104,7 +117,9 @@ async function take(picture: Picture, server: Server, observer: Observer): Promi
   await observer.request('scene.load', { scene });
   await observer.request('control.pause', {});
   await observer.request('control.reset', {});
-  await observer.request('control.step', { ticks });
+  for (let done = 0; done < ticks; done += kStep) {
+    await observer.request('control.step', { ticks: Math.min(kStep, ticks - done) });
+  }
   const viewer = await Viewer.open(`${server.url}#view=${view ?? ''}`, {
     colorScheme: 'light',
     ...look,
