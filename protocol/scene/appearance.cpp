@@ -61,7 +61,7 @@ constexpr std::array kSolidLooks{
     KnownLook{"ice", 0xcfe9f5, 0.12, 0, 0.75},
     KnownLook{"glass", 0xd8efe9, 0.04, 0, 0.45},
     KnownLook{"wax candle cheese butter", 0xf0dba4, 0.45, 0, 1},
-    KnownLook{"jelly gel gelatine gelatin", 0xe2345c, 0.12, 0, 0.8},
+    KnownLook{"jelly gel gelatine gelatin", 0xd81e4c, 0.12, 0, 0.88},
     KnownLook{"vessel muscle", 0xc2555a, 0.45, 0, 1},
     KnownLook{"tissue skin flesh", 0xe39b92, 0.55, 0, 1},
     KnownLook{"cloth textile canvas sheet fabric", 0xd9c7a3, 0.95, 0, 1},

@@ -55,6 +55,7 @@ it('changes the appearance of a material, which is drawn, and restores it', asyn
   const changed = async (): Promise<number> =>
     visits.viewer.difference(before, await visits.viewer.picture());
   await page.selectOption('#material', 'wood');
+  expect(await page.isVisible('#appearance-absorption_length')).toBe(false); // only of liquids
   const brown = await page.inputValue('#appearance-colour');
   await page.fill('#appearance-colour', '#2040ff');
   await page.dispatchEvent('#appearance-colour', 'change');

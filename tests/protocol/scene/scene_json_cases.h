@@ -21,7 +21,8 @@ Result<std::string> full_meshes(const std::string& name);
 /// A source without files.
 Result<std::string> no_meshes(const std::string& name);
 
-/// Returns all saved fields of the scene, and then the appearances of its materials. Equal bytes mean equal scenes.
+/// Returns all saved fields of the scene, and then the appearances of its materials. Equal bytes
+/// mean equal scenes.
 std::vector<std::uint8_t> bits_of(const Scene& scene);
 
 /// Returns "code path" of every error, one per line; "" if there is none.

@@ -118,6 +118,7 @@ export class View {
     const look = readTheme();
     this.world.paint(look);
     this.stage.paint(look);
+    this.sunShadow?.invalidate(); // the map is lost with the graphics context
   }
 
   private apply(): void {

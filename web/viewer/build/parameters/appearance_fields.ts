@@ -19,7 +19,7 @@ const field = (
   unit,
   min,
   max,
-  otherwise: 'automatic',
+  otherwise: 'auto',
 });
 
 /** The numbers of an appearance, with the ranges in SCENE.md. */

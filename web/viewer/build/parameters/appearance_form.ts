@@ -18,6 +18,8 @@ export class AppearanceForm {
   readonly element: HTMLElement;
   private readonly colour = make('input', { id: 'appearance-colour', type: 'color' });
   private readonly finish = make('select', { id: 'appearance-finish' });
+  /** Only for solids. */
+  private readonly finishRow: HTMLElement;
   private readonly reset: HTMLButtonElement;
   private readonly fault = make('p', { className: 'fault', role: 'alert', hidden: true });
   private readonly fields: readonly (AppearanceField & { input: ValueField })[];
@@ -45,12 +47,13 @@ export class AppearanceForm {
     this.reset.id = 'appearance-reset';
     const row = (label: string, control: HTMLElement): HTMLElement =>
       make('div', { className: 'row' }, make('label', { htmlFor: control.id }, label), control);
+    this.finishRow = row('Finish', this.finish);
     this.element = make(
       'div',
       { className: 'build-form' },
       make('h3', {}, 'Appearance'),
       row('Colour', this.colour),
-      row('Finish', this.finish),
+      this.finishRow,
       this.fault,
       ...this.fields.map(({ input }) => input.element),
       make('div', { className: 'row' }, this.reset),
@@ -73,6 +76,7 @@ export class AppearanceForm {
     const { appearance = {}, liquid } = material;
     const before = initial?.appearance ?? {};
     this.colour.value = (appearance.colour ?? complete?.colour ?? '#888888').toLowerCase();
+    this.finishRow.hidden = liquid !== undefined;
     this.finish.value = appearance.finish ?? kAutomatic;
     this.finish.title = complete?.finish ? `Drawn as: ${kFinishes[complete.finish]}` : '';
     for (const { name, unit, input } of this.fields) {
