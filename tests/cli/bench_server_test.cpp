@@ -134,7 +134,9 @@ TEST(BenchFaults, InjectsEachFaultAndLosesNothing) {
         measure.find("memory after") == std::string::npos) {
       EXPECT_EQ(table.text(row, "passed"), "true") << measure << '\n' << result.out << result.err;
     }
-    if (measure == "kills") EXPECT_GE(table.number(row, "value"), 2);
+    if (measure == "kills") {
+      EXPECT_GE(table.number(row, "value"), 2);
+    }
   }
   EXPECT_GT(table.rows.size(), 10U) << result.out << result.err;
 }
