@@ -173,7 +173,11 @@ describe('what the server refuses, in words', () => {
       { retry_after: 1.2 },
       'Method.name: reason. Too many requests. Try again in 2 s.',
     ],
-    ['limit_reached', {}, 'Method.name: reason. Reduce the request, or remove bodies or saved items, and try again.'],
+    [
+      'limit_reached',
+      {},
+      'Method.name: reason. Reduce the request, or remove bodies or saved items, and try again.',
+    ],
     [
       'timed_out',
       {},

@@ -28,7 +28,13 @@ const kStiffness = field('stiffness', 'Stiffness', 'N/m', 0, 1e12);
 const kDamping = { ...field('damping', 'Damping', 'N s/m', 0, 1e12), usual: 0 };
 const kFriction = { ...field('friction', 'Friction', 'Coulomb coefficient', 0, 10), usual: 0 };
 const kThreshold = {
-  ...field('threshold', 'Threshold', 'm, distance below which particles repel each other', 1e-6, 1e6),
+  ...field(
+    'threshold',
+    'Threshold',
+    'm, distance below which particles repel each other',
+    1e-6,
+    1e6,
+  ),
   otherwise: 'sum of the particle radii',
 };
 const kReach = { ...field('reach', 'Reach', 'thresholds', 1.1, 4), usual: 2 };
