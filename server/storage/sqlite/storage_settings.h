@@ -15,8 +15,8 @@ struct StorageSettings {
   /// Written bytes of the checkpoints of all sessions per second. The default is 13 GB per day.
   double checkpoint_bytes_per_second = 150'000;
   std::size_t log_bytes = std::size_t{64} << 20;  ///< [bytes]; the oldest commands are removed
-  /// Computing time of all sessions between their states in storage, if the cost permits. Limits the
-  /// work that a recovery of the server repeats.
+  /// Computing time of all sessions between their states in storage, if the cost permits. Limits
+  /// the work that a recovery of the server repeats.
   std::chrono::milliseconds checkpoint_after{2000};
 };
 
