@@ -171,9 +171,9 @@ TEST(TaskRunner, ShortRunsWakeNobody) {
   EXPECT_FALSE(is_worth(microseconds(1000), 8, 0)) << "no work is left";
 }
 
-/// Runs blocks until `expected` threads have run one. Returns the threads that ran a block. A thread
-/// waits for the others only in its second block, because the caller wakes a helper between two of
-/// its own blocks.
+/// Runs blocks until `expected` threads have run one. Returns the threads that ran a block. A
+/// thread waits for the others only in its second block, because the caller wakes a helper between
+/// two of its own blocks.
 std::set<std::thread::id> threads_of_a_long_run(ThreadPoolRunner& runner, std::size_t expected) {
   Threads threads(expected);
   runner.run(10, [&](std::size_t) {
