@@ -125,7 +125,7 @@ TEST(BenchRecovery, KillsAServerAndMeasuresItsRecovery) {
 TEST(BenchFaults, InjectsEachFaultAndLosesNothing) {
   const TemporaryFolder folder;
   const ProgramResult result =
-      run_bench({"faults", "--seconds", "20", "--kill-every", "6", "--sessions", "3", "--clients",
+      run_bench({"faults", "--seconds", "9", "--kill-every", "3", "--sessions", "3", "--clients",
                  "24", "--output", folder.path().string()});
   const Table table = read_csv((folder.path() / "faults.csv").string());
   for (std::size_t row = 0; row < table.rows.size(); ++row) {

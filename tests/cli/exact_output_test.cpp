@@ -248,7 +248,7 @@ TEST(ExactOutput, HashAndProfileNameTheInstructionSet) {
       append_hash(hash, simulation.state_hash());
       EXPECT_THAT(result.out, testing::HasSubstr(hash + ' ' + name + '\n'));
       EXPECT_THAT(result.out, testing::HasSubstr(std::string("instruction set: ") + name + '\n'));
-      EXPECT_THAT(result.err, testing::HasSubstr(std::string("instruction set ") + name));
+      EXPECT_THAT(result.err, testing::HasSubstr(std::string("instruction set: ") + name));
     } else {
       EXPECT_EQ(result.exit_code, 2);
       EXPECT_THAT(result.err, testing::HasSubstr(std::string("this machine has no ") + name));

@@ -39,8 +39,9 @@ constexpr std::size_t kMaxMemory = std::size_t{400} << 20;
 constexpr std::int64_t kBallast = std::int64_t{450} << 20;
 constexpr std::int64_t kClockStep = std::int64_t{3600} * 1'000'000'000;  // [ns]
 constexpr std::chrono::minutes kRecoveryPatience{1};
+constexpr std::chrono::seconds kEffectPatience{10};
 /// By then the server has released unused memory after it has closed all connections.
-constexpr std::chrono::milliseconds kRest = 2 * MemoryReturn::kInterval + std::chrono::seconds(2);
+constexpr steady_clock::duration kRest = 2 * MemoryReturn::kInterval + std::chrono::seconds(2);
 constexpr double kMebibyte = 1 << 20;
 
 /// A line of the result.
@@ -64,11 +65,11 @@ class FaultSoak {
   bool run() {
     start();
     create_sessions();
-    const auto end = steady_clock::now() + seconds(options_.seconds);
     // The memory after the first life counts as that of the start: all parts have been used then.
     live(false);
     const double calm_memory = memory_at_rest();
     kill();
+    const auto end = steady_clock::now() + seconds(options_.seconds - options_.kill_every);
     for (bool is_last = false; !is_last;) {
       start();
       is_last = steady_clock::now() + seconds(options_.kill_every) >= end;
@@ -187,7 +188,7 @@ class FaultSoak {
         run_fault_client(manner, place, name, notes, tally_);
       });
     }
-    inject_faults();
+    inject_faults(notes);
     notes.ends = true;
     if (ends_by_kill) kill();
     for (std::thread& client : clients) client.join();
@@ -204,13 +205,21 @@ class FaultSoak {
     return kOthers[client % std::size(kOthers)];
   }
 
-  void inject_faults() {
+  void inject_faults(const LifeNotes& notes) {
     const auto wait = [begin = steady_clock::now(), this](double part) {
       std::this_thread::sleep_until(begin + seconds(part * options_.kill_every));
     };
+    const auto wait_for_effect = [](const auto& has_effect) {
+      const auto deadline = steady_clock::now() + kEffectPatience;
+      while (!has_effect() && steady_clock::now() < deadline) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      }
+    };
     wait(0.2);
+    const std::uint32_t syncs = control_->delayed_syncs;
     control_->disk_paused = 1;
     wait(0.23);
+    wait_for_effect([&] { return control_->delayed_syncs > syncs; });
     control_->disk_paused = 0;
     wait(0.4);
     control_->clock_step = kClockStep;
@@ -220,6 +229,7 @@ class FaultSoak {
     wait(0.6);
     control_->ballast = kBallast;
     wait(0.7);
+    wait_for_effect([&] { return notes.memory_refusals > 0; });
     control_->ballast = 0;
     wait(1);
   }
@@ -259,7 +269,7 @@ class FaultSoak {
   }
 
   double memory_at_rest() {
-    std::this_thread::sleep_for(kRest);
+    std::this_thread::sleep_for(std::min(kRest, seconds(options_.kill_every)));
     return process_figures(server_->process()).resident;
   }
 
