@@ -29,9 +29,9 @@ constexpr std::size_t kMaxRecordThreads = 256;
 constexpr std::size_t kMaxKeyEvery = 1000;
 
 constexpr const char* kRecordFooter =
-    R"(A viewer shows the recording without a server: drop the file on its page. The frames are those
-of a live session. A frame states its maximum position error, by default 1/64 of the particle
-distance. More key frames make the file larger and seeking faster.
+    R"(A viewer shows the recording without a server: drop the file on its page, or see vat export. The
+frames are those of a live session. A frame states its maximum position error, by default 1/64 of
+the particle distance. More key frames make the file larger and seeking faster.
 
 SIGINT and SIGTERM complete the recording up to the present frame and write the state to
 NAME.vatrec.state. The same command with --resume continues from there: the finished file has the

@@ -12,8 +12,8 @@ import './replay.css';
 
 export interface ReplayActions {
   togglePlaying(): void;
-  /** Returns to the live session. */
-  leave(): void;
+  /** Returns to the live session. A page without sessions has no button for it. */
+  leave?(): void;
   /** Selects whether a recording of frames restarts after its end. */
   loop(wanted: boolean): void;
   nameOfBody(body: number): string;
@@ -47,8 +47,9 @@ export class ReplayBar {
     this.company = new RecordedCompany(stage, (body) => actions.nameOfBody(body));
     this.play = makeButton('Play', () => actions.togglePlaying());
     this.play.id = 'replay-play';
-    const back = makeButton('Back to live', () => actions.leave());
+    const back = makeButton('Back to live', () => actions.leave?.());
     back.id = 'replay-leave';
+    back.hidden = !actions.leave;
     this.words.role = 'status';
     const head = make('header', {}, this.title, back);
     const box = make('input', { type: 'checkbox', id: 'replay-loop', checked: true });
