@@ -25,6 +25,7 @@ it('plays a file, seeks, and returns to the session', async () => {
   await visits.viewer.untilScene('twice');
   expect(await page.textContent('#connection-text')).toBe('Recording');
   expect(await page.isDisabled('#scene')).toBe(true);
+  expect(await page.isDisabled('#share-open')).toBe(true);
   await page.click('#replay-play');
   const slider = page.locator('#replay-position');
   expect(await slider.getAttribute('max')).toBe('3');
@@ -34,6 +35,7 @@ it('plays a file, seeks, and returns to the session', async () => {
   await page.click('#replay-leave');
   await page.waitForSelector('#replay', { state: 'hidden' });
   await visits.viewer.untilScene('rigid-stack');
+  expect(await page.isDisabled('#share-open')).toBe(false);
 });
 
 it('says why a file is not shown, and the session continues', async () => {

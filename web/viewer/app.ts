@@ -232,11 +232,13 @@ export class App {
   private enable(isJoined: boolean): void {
     this.canvas.dataset.joined = String(isJoined);
     this.grabber.enable(isJoined && !this.description?.replay);
-    this.company.enable(isJoined);
+    // A recording has no participants, statistics and connections.
+    const hasServer = isJoined && this.description?.session !== kRecordedSession;
+    this.company.enable(hasServer);
     this.controls.enable(isJoined);
     this.summary.enable(isJoined);
-    this.curves.enable(isJoined);
-    this.links.enable(isJoined);
+    this.curves.enable(hasServer);
+    this.links.enable(hasServer);
   }
 
   /** Switches to another session; undefined: the server's first. */
