@@ -21,6 +21,8 @@ int run_command(int argc, char** argv) {
   add_devices_command(app, exit_code);
   add_script_command(app, exit_code);
   add_replay_command(app, exit_code);
+  add_record_command(app, exit_code);
+  add_export_command(app, exit_code);
   add_backup_commands(app, exit_code);
   try {
     app.parse(argc, argv);

@@ -1,6 +1,7 @@
 #include "server/frames/frame_domain.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/support/check.h"
 
@@ -48,6 +49,19 @@ FrameGrid FrameDomain::grid(double max_error) const {
   VAT_CHECK(max_error >= 0);
   if (box_.isEmpty()) return make_frame_grid(Vec3::Zero(), Vec3::Zero(), max_error);
   return make_frame_grid(box_.min(), box_.max(), max_error);
+}
+
+FrameGrid FrameDomain::centered_grid(double max_error) const {
+  constexpr Real kSteps = 65'535;
+  FrameGrid centered = grid(max_error);
+  if (box_.isEmpty()) return centered;
+  for (int q = 0; q < 3; ++q) {
+    const Real unused = kSteps - std::ceil(box_.sizes()[q] / centered.quantum);
+    if (unused > 0) {
+      centered.origin[static_cast<std::size_t>(q)] -= std::floor(unused / 2) * centered.quantum;
+    }
+  }
+  return centered;
 }
 
 double default_max_error(const Simulation& simulation) {

@@ -19,6 +19,9 @@ class FrameDomain {
   explicit FrameDomain(const std::optional<Vat>& vat);
   void include(const PublishedState& state);
   FrameGrid grid(double max_error) const;
+  /// Returns the grid with the box in its middle. Particles can therefore leave the box on all
+  /// sides before they leave the grid.
+  FrameGrid centered_grid(double max_error) const;
 
  private:
   using Box = Eigen::AlignedBox<Real, 3>;

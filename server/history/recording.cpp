@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/saved/sealed_bytes.h"
+#include "protocol/recording/recording_index.h"
 #include "server/storage/sqlite/compression.h"
 #include "server/storage/sqlite/storage_error.h"
 
@@ -93,6 +94,11 @@ Result<Recording> read_recording(std::span<const std::uint8_t> bytes) {
   if (bytes.size() > kMaxRecordingBytes) {
     return Error{"too_large", "",
                  "a recording has at most " + std::to_string(kMaxRecordingBytes) + " bytes"};
+  }
+  if (is_frame_recording(bytes)) {
+    return Error{
+        "other_format", "",
+        "this recording contains frames, not the commands of a session; a viewer shows it"};
   }
   const auto content = open_sealed(kSeal, bytes);
   if (!content) return content.errors();

@@ -85,6 +85,24 @@ INSTANTIATE_TEST_SUITE_P(
                     WrongUse{with_scene({"another.json"}), "another.json"},
                     WrongUse{with_scene({"--until"}), "--until"}));
 
+std::vector<std::string> record_with(std::vector<std::string> options) {
+  options.insert(options.begin(), {"record", test_scene("pair"), "--output", "a.vatrec"});
+  return options;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Recordings, WrongUsage,
+    testing::Values(
+        WrongUse{{"record"}, "scene"}, WrongUse{{"record", test_scene("pair")}, "--output"},
+        WrongUse{{"record", test_scene("pair"), "--output", "a.csv"}, "must end in .vatrec"},
+        WrongUse{record_with({"--until", "2e6"}), "--until"},
+        WrongUse{record_with({"--every", "0"}), "--every"},
+        WrongUse{record_with({"--max-error", "-1"}), "--max-error"},
+        WrongUse{record_with({"--key-every", "0"}), "--key-every"},
+        WrongUse{record_with({"--threads", "0"}), "--threads"}, WrongUse{{"export"}, "recording"},
+        WrongUse{{"export", "none.vatrec", "--html", "a.html"}, "none.vatrec"},
+        WrongUse{{"export", test_scene("pair"), "--html", "a.txt"}, "must end in .html"}));
+
 TEST(Usage, VersionIsPrinted) {
   const ProgramResult result = run_vat({"--version"});
   EXPECT_EQ(result.exit_code, 0);

@@ -23,17 +23,18 @@ FOLDER_ORDER = (
     "core/stepping", "core/sleep", "core/saved", "core/simulation",
     # steps on other devices
     "core/device/opencl", "core/device/tait", "core/device",
-    "protocol/json", "protocol/scene", "protocol/frame",
+    "protocol/json", "protocol/scene", "protocol/frame", "protocol/recording",
     # files, sockets and measurements, without sessions
     "server/support", "server/output", "server/storage/sqlite", "server/storage", "server/access", "server/transport",
     "server/operations", "server/messages", "server/http",
     # the parts of a session
-    "server/clients", "server/frames", "server/people", "server/history", "server/session/ticks",
+    "server/clients", "server/frames", "server/recording", "server/people", "server/history", "server/session/ticks",
     "server/session/core", "server/session", "server/replay", "server/directory",
     # the interface of clients
     "server/methods", "server/rpc",
     # the programs
-    "server/script", "server/settings", "server/cli/common", "server/cli/simulate", "server/cli",
+    "server/script", "server/settings", "server/cli/common", "server/cli/simulate", "server/cli/record",
+    "server/cli",
     "server",
 )
 

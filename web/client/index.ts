@@ -3,6 +3,7 @@ export * from './clock.js';
 export * from './connection.js';
 export * from './frame.js';
 export * from './messages.js';
+export * from './recording.js';
 export * from './requests.js';
 export * from './session.js';
 export * from './socket.js';

@@ -27,6 +27,7 @@ import { Company } from './people/company';
 import { addressOf } from './stream/address';
 import { now } from './stream/clock';
 import { Playout } from './stream/playout';
+import { kRecordedSession, linkedRecording } from './stream/recording_file';
 import { chosenSession, Stream } from './stream/stream';
 import type { Report } from './stream/stream';
 import { WholePicture } from './panel/status/whole_picture';
@@ -90,6 +91,7 @@ export class App {
     nameOfBody: (body) => this.nameOfBody(body),
     placing: (isPlacing) => (this.grabber.isPaused = isPlacing),
     go: (session) => this.go(session),
+    stream: this.stream,
   });
   private readonly curves = new Curves(this.desk, () => this.counters.figures);
   private readonly links = new Links(this.desk, this.view);
@@ -113,7 +115,9 @@ export class App {
     // Hidden pages are not drawn.
     document.addEventListener('visibilitychange', () => this.stream.watch(!document.hidden));
     this.stream.watch(!document.hidden);
-    this.stream.open();
+    const recording = linkedRecording(location.href);
+    if (recording === undefined) this.stream.open();
+    else this.stream.play(recording);
   }
 
   private handle(report: Report): void {
@@ -136,6 +140,12 @@ export class App {
       case 'frame':
         this.counters.addFrame(report.bytes);
         this.playout.put(report.frame, now());
+        break;
+      case 'recorded':
+        this.showRecorded();
+        break;
+      case 'unreadable':
+        this.refuseRecording(report.message);
         break;
       case 'clock':
         this.clockOffset = report.offset;
@@ -197,7 +207,20 @@ export class App {
     delete this.canvas.dataset.tick; // until a frame of this description is drawn
     this.enable(true);
     if (isEntry) this.hint.begin();
-    if (isEntry) this.controls.enter();
+    if (isEntry && description.session !== kRecordedSession) this.controls.enter();
+  }
+
+  /** Called when a recording is open, before its description. */
+  private showRecorded(): void {
+    this.leave();
+    this.clockOffset = undefined;
+    this.connection.showRecorded();
+  }
+
+  private refuseRecording(message: string): void {
+    const words = `The recording cannot be shown: ${message}.`;
+    this.notices.add('error', words);
+    if (this.canvas.dataset.joined !== 'true') showObstacle('server', words);
   }
 
   private leave(): void {
@@ -209,11 +232,13 @@ export class App {
   private enable(isJoined: boolean): void {
     this.canvas.dataset.joined = String(isJoined);
     this.grabber.enable(isJoined && !this.description?.replay);
-    this.company.enable(isJoined);
+    // A recording has no participants, statistics and connections.
+    const hasServer = isJoined && this.description?.session !== kRecordedSession;
+    this.company.enable(hasServer);
     this.controls.enable(isJoined);
     this.summary.enable(isJoined);
-    this.curves.enable(isJoined);
-    this.links.enable(isJoined);
+    this.curves.enable(hasServer);
+    this.links.enable(hasServer);
   }
 
   /** Switches to another session; undefined: the server's first. */

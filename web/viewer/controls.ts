@@ -15,6 +15,7 @@ import { Scenes } from './panel/scenes';
 import { ReplayBar } from './replay/replay_bar';
 import { ask } from './panel/desk';
 import type { Desk } from './panel/desk';
+import type { Stream } from './stream/stream';
 import type { View } from './view/view';
 
 /** The page's functions that the controls use. */
@@ -25,6 +26,7 @@ export interface Surroundings {
   placing(isPlacing: boolean): void;
   /** Switches to another session; undefined: the server's first. */
   go(session: string | undefined): void;
+  readonly stream: Pick<Stream, 'play' | 'loop'>;
 }
 
 /** The controls of the session: playback, scenes, saved items, parameters. */
@@ -63,6 +65,7 @@ export class Controls {
     this.playback = new Playback(actions, keys);
     this.sceneFile = new SceneFile({
       load: (scene) => this.load(scene),
+      open: (file) => void this.kept.openRecording(file),
       refuse: (words) => desk.fail(words),
     });
     this.gravity = new Gravity((gravity) => ask(desk, 'world.set_gravity', { gravity }));
@@ -86,10 +89,12 @@ export class Controls {
       load: (scene) => this.load(scene),
       scenesChanged: () => void this.listScenes(),
       go: (session) => surroundings.go(session),
+      play: (file) => surroundings.stream.play(file),
     });
     this.replay = new ReplayBar(desk, view.stage, {
       togglePlaying: () => this.playback.toggle(),
       leave: () => surroundings.go(this.live),
+      loop: (wanted) => surroundings.stream.loop(wanted),
       nameOfBody: (body) => surroundings.nameOfBody(body),
     });
     keys.add({

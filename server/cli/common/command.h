@@ -42,6 +42,10 @@ void add_devices_command(CLI::App& app, int& exit_code);
 void add_script_command(CLI::App& app, int& exit_code);
 /// Adds `vat replay`.
 void add_replay_command(CLI::App& app, int& exit_code);
+/// Adds `vat record`, which computes a scene and writes the frames of a viewer.
+void add_record_command(CLI::App& app, int& exit_code);
+/// Adds `vat export`, which writes a recording as a page.
+void add_export_command(CLI::App& app, int& exit_code);
 /// Adds `vat backup` and `vat restore`.
 void add_backup_commands(CLI::App& app, int& exit_code);
 

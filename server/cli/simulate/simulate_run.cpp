@@ -45,9 +45,11 @@ std::uint64_t next_stop(std::uint64_t step, std::uint64_t steps_per_tick,
 }  // namespace
 
 Status run(Simulation& simulation, const Schedule& schedule, const RunHooks& hooks,
-           RunTotals& totals) {
-  if (Status written = hooks.output(totals); !written) return written;
-  for (std::uint64_t step = 0; step < schedule.total_steps;) {
+           RunTotals& totals, std::uint64_t step) {
+  if (step == 0) {
+    if (Status written = hooks.output(totals); !written) return written;
+  }
+  while (step < schedule.total_steps) {
     const std::uint64_t stop = next_stop(step, simulation.steps_per_tick(), schedule);
     const auto count = static_cast<std::uint32_t>(stop - step);
     if (Status taken = take_steps(simulation, count, hooks, totals); !taken) return taken;

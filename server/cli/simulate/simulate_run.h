@@ -28,9 +28,11 @@ struct RunHooks {
 };
 
 /// Runs the steps of the schedule tick by tick, like a server, so that both compute the same
-/// states. Ends if a callback returns an error, or if the guard rejects a step.
+/// states. Ends if a callback returns an error, or if the guard rejects a step. `step` is the
+/// number of steps that the simulation has taken before; the output of this step exists, unless it
+/// is 0.
 Status run(Simulation& simulation, const Schedule& schedule, const RunHooks& hooks,
-           RunTotals& totals);
+           RunTotals& totals, std::uint64_t step = 0);
 
 /// Returns an error that describes a guard event, with the path of the body.
 Error describe(const GuardEvent& event, const Simulation& simulation);

@@ -103,6 +103,16 @@ TEST(FrameDomain, APositionOutsideAGridIsMovedToTheNearestInside) {
               0.5 / kSteps + 1e-12);
 }
 
+TEST(FrameDomain, CenteredGridHasTheBoxInItsMiddle) {
+  FrameDomain domain(make_vat());
+  const FrameGrid grid = domain.centered_grid(1e-3);
+  EXPECT_EQ(grid.quantum, domain.grid(1e-3).quantum);
+  const Vec3 origin(grid.origin[0], grid.origin[1], grid.origin[2]);
+  const Vec3 middle = origin + Vec3::Constant(kSteps * grid.quantum / 2);
+  EXPECT_LE((middle - Vec3(0, 0.5, 0.25)).cwiseAbs().maxCoeff(), grid.quantum);
+  EXPECT_EQ(domain.centered_grid(0).origin[0], domain.grid(0).origin[0]) << "no range is left";
+}
+
 TEST(FrameDomain, SmallMovesKeepTheGrid) {
   FrameDomain domain;
   domain.include(make_state(cloud(Vec3::Zero(), 1)));

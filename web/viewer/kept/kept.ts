@@ -11,6 +11,8 @@ export interface KeptActions {
   /** Called after scenes were saved or deleted. */
   scenesChanged(): void;
   go(session: string): void;
+  /** Plays a recording of frames. */
+  play(file: File): void;
 }
 
 /** The section of saved states, scenes and recordings. */
@@ -26,7 +28,7 @@ export class Kept {
   constructor(desk: Desk, actions: KeptActions) {
     this.states = new SavedStates(desk);
     this.scenes = new SavedScenes(desk, actions.load, actions.scenesChanged);
-    this.recordings = new Recordings(desk, () => this.session, actions.go);
+    this.recordings = new Recordings(desk, () => this.session, actions);
     element('kept-place', HTMLElement).append(this.note);
     this.section.addEventListener('toggle', () => {
       if (!this.section.open || !this.isEnabled) return;
@@ -40,6 +42,10 @@ export class Kept {
     this.states.list.enable(enabled && !isReplay);
     this.scenes.list.enable(enabled && !isReplay);
     this.recordings.enable(enabled, isReplay);
+  }
+
+  openRecording(file: File): Promise<void> {
+    return this.recordings.open(file);
   }
 
   describe({ session }: SessionDescription): void {

@@ -1,8 +1,15 @@
-import { RequestError } from '../../client/index';
+import { isCommandRecording, RequestError } from '../../client/index';
 import { element, make, makeButton } from '../panel/elements';
 import { ask } from '../panel/desk';
 import type { Desk } from '../panel/desk';
 import { faultOfRecording, sendRecording } from './recording_file';
+
+export interface RecordingActions {
+  /** Switches to the session of a replay. */
+  go(session: string): void;
+  /** Plays a recording of frames. */
+  play(file: File): void;
+}
 
 /** Recordings: the session's as a file or a replay, and replays of files. */
 export class Recordings {
@@ -20,18 +27,17 @@ export class Recordings {
   private isLive = false;
   private readonly progress = make('p', { id: 'recording-progress', className: 'soft' });
 
-  /** `go` switches to the session of a replay. */
   constructor(
     private readonly desk: Desk,
     private readonly session: () => string,
-    private readonly go: (session: string) => void,
+    private readonly actions: RecordingActions,
   ) {
     this.exporter.id = 'recording-export';
     this.watcher.id = 'recording-watch';
     this.opener.id = 'recording-open';
     this.progress.role = 'status';
     this.input.addEventListener('change', () => {
-      void this.import(this.input.files?.[0]);
+      void this.open(this.input.files?.[0]);
       this.input.value = ''; // allows the same file to be chosen again
     });
     const own = make('div', { className: 'row' }, this.exporter, this.watcher);
@@ -76,11 +82,17 @@ export class Recordings {
 
   private async openOwn(): Promise<void> {
     const opened = await ask(this.desk, 'replay.open', { session: this.session() });
-    if (opened) this.go(opened.session);
+    if (opened) this.actions.go(opened.session);
   }
 
-  private async import(file: File | undefined): Promise<void> {
+  /** Opens a file: plays its frames, or sends its commands to the server, which replays them. */
+  async open(file: File | undefined): Promise<void> {
     if (!file) return;
+    if (isCommandRecording(await file.slice(0, 8).arrayBuffer())) await this.import(file);
+    else this.actions.play(file);
+  }
+
+  private async import(file: File): Promise<void> {
     const fault = faultOfRecording(file.name, file.size);
     if (fault !== undefined) return this.desk.fail(fault);
     try {
@@ -88,7 +100,7 @@ export class Recordings {
         this.progress.textContent = `Sending “${file.name}”: ${Math.round(100 * share)} %`;
       });
       const { session } = await this.desk.request('replay.open', { recording });
-      this.go(session);
+      this.actions.go(session);
     } catch (error) {
       if (!(error instanceof RequestError)) throw error;
       this.desk.refuse(error);

@@ -21,12 +21,19 @@ export function readScene(text: string, file: string): { scene: Scene } | { faul
   return { scene: { ...scene, name: scene.name ?? file.replace(/\.json$/i, '').slice(0, 48) } };
 }
 
+/** Returns whether a file has the name of a recording. A replay can be followed by another one. */
+function isRecording({ name }: File): boolean {
+  return /\.vatrec$/i.test(name);
+}
+
 export interface SceneFileActions {
   load(scene: Scene): void;
+  /** Opens a recording. */
+  open(recording: File): void;
   refuse(words: string): void;
 }
 
-/** Loads a scene from a file that the user drops on the page or chooses. */
+/** Loads a scene from a file that the user drops on the page or chooses. Opens dropped recordings. */
 export class SceneFile {
   private readonly button = element('scene-file', HTMLButtonElement);
   private readonly input = element('scene-file-input', HTMLInputElement);
@@ -60,7 +67,8 @@ export class SceneFile {
     const file = event.dataTransfer?.files[0];
     if (!file) return;
     event.preventDefault();
-    if (!this.button.disabled) void this.take(file);
+    if (isRecording(file)) this.actions.open(file);
+    else if (!this.button.disabled) void this.take(file);
   }
 
   private async take(file: File | undefined): Promise<void> {

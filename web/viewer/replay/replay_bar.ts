@@ -4,6 +4,7 @@ import { formatSeconds } from '../panel/format';
 import { ask } from '../panel/desk';
 import type { Desk } from '../panel/desk';
 import { Newest } from '../stream/newest';
+import { kRecordedSession } from '../stream/recording_file';
 import type { Stage } from '../view/stage';
 import { RecordedCompany } from './recorded_people';
 import { Timeline } from './timeline';
@@ -11,8 +12,10 @@ import './replay.css';
 
 export interface ReplayActions {
   togglePlaying(): void;
-  /** Returns to the live session. */
-  leave(): void;
+  /** Returns to the live session. A page without sessions has no button for it. */
+  leave?(): void;
+  /** Selects whether a recording of frames restarts after its end. */
+  loop(wanted: boolean): void;
   nameOfBody(body: number): string;
 }
 
@@ -29,6 +32,7 @@ export class ReplayBar {
   private readonly words = make('p', { id: 'replay-words' });
   private readonly timeline: Timeline;
   private readonly company: RecordedCompany;
+  private readonly loop: HTMLLabelElement;
   private replay: SessionDescription['replay'];
   private tickSeconds = 0;
   private status: SessionStatus | undefined;
@@ -43,16 +47,21 @@ export class ReplayBar {
     this.company = new RecordedCompany(stage, (body) => actions.nameOfBody(body));
     this.play = makeButton('Play', () => actions.togglePlaying());
     this.play.id = 'replay-play';
-    const back = makeButton('Back to live', () => actions.leave());
+    const back = makeButton('Back to live', () => actions.leave?.());
     back.id = 'replay-leave';
+    back.hidden = !actions.leave;
     this.words.role = 'status';
     const head = make('header', {}, this.title, back);
-    const row = make('div', { className: 'row' }, this.play, this.timeline.element);
+    const box = make('input', { type: 'checkbox', id: 'replay-loop', checked: true });
+    box.addEventListener('change', () => actions.loop(box.checked));
+    this.loop = make('label', { hidden: true }, box, ' Loop');
+    const row = make('div', { className: 'row' }, this.play, this.timeline.element, this.loop);
     this.bar.append(head, row, this.words, this.company.list);
   }
 
   /** Shows the bar if the session is a replay. */
-  describe({ replay, tick_seconds: tickSeconds, name }: SessionDescription): void {
+  describe({ replay, tick_seconds: tickSeconds, name, session }: SessionDescription): void {
+    this.loop.hidden = session !== kRecordedSession;
     const isNew = replay && (!this.replay || this.bar.hidden);
     this.replay = replay;
     this.tickSeconds = tickSeconds;

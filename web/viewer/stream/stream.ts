@@ -24,6 +24,7 @@ export class Stream {
   });
   private readonly waiting = new Map<number, Waiting>();
   private lastKey = 0;
+  private isRecorded = false;
   private session: string | undefined;
 
   constructor(
@@ -36,8 +37,9 @@ export class Stream {
     this.worker.onmessage = ({ data }: MessageEvent<FromWorker>) => this.handle(data);
   }
 
-  /** Connects now, also during the delay before the next attempt. */
+  /** Connects now, also during the delay before the next attempt. Ends a recording. */
   open(): void {
+    this.isRecorded = false;
     this.post({
       type: 'open',
       url: streamUrl(this.page),
@@ -50,7 +52,18 @@ export class Stream {
   /** Joins another session; undefined: the server's first. */
   go(session: string | undefined): void {
     this.session = session;
-    this.post({ type: 'go', session });
+    if (this.isRecorded) this.open();
+    else this.post({ type: 'go', session });
+  }
+
+  /** Plays a recording of frames in place of a session: a file, or its address on this server. */
+  play(file: Blob | string): void {
+    this.post({ type: 'play', file, page: this.page });
+  }
+
+  /** Selects whether a recording restarts after its end; initially selected. */
+  loop(wanted: boolean): void {
+    this.post({ type: 'loop', wanted });
   }
 
   readonly request: Request = (method, params) => {
@@ -99,6 +112,7 @@ export class Stream {
       // Stored per tab, so that reloading the page resumes the participant.
       sessionStorage.setItem(kResumeKey, message.token);
     } else {
+      if (message.type === 'recorded') this.isRecorded = true;
       this.onReport(message);
     }
   }

@@ -1,13 +1,24 @@
 /** Owns the connection and decodes frames, so that the page's thread only draws. */
-import { emptyFrame, RequestError, Session } from '../../client/index';
-import type { Attributes, Frame, MethodName, Params } from '../../client/index';
+import { emptyFrame, FrameRecording, RequestError, Session } from '../../client/index';
+import type {
+  Attributes,
+  Event,
+  Frame,
+  MethodName,
+  Params,
+  SessionDescription,
+} from '../../client/index';
 import { now } from './clock';
+import { RecordedSession } from './recorded_session';
+import { download, sourceOf } from './recording_file';
 import type { Entrance, FromWorker, Refusal, ToWorker } from './wire';
 
 /** 1/64 of the spacing; smaller errors are not visible. */
 const kErrorInRadii = 1 / 32;
 
 let session: Session | undefined;
+/** The recording that is shown in place of a session. */
+let recorded: RecordedSession | undefined;
 let isWatched = true;
 let attributes: Attributes = {};
 const frame = emptyFrame();
@@ -27,7 +38,7 @@ async function probe(): Promise<boolean> {
 }
 
 function open(entrance: Entrance): void {
-  session?.close();
+  close();
   session = new Session(
     { ...entrance, socket: WebSocket, now, probe, errorInRadii: kErrorInRadii },
     {
@@ -47,6 +58,36 @@ function open(entrance: Entrance): void {
   session.open();
 }
 
+function close(): void {
+  session?.close();
+  recorded?.close();
+  session = recorded = undefined;
+}
+
+async function play(file: Blob | string, page: string): Promise<void> {
+  let recording: FrameRecording;
+  try {
+    const blob = typeof file === 'string' ? await download(file, page) : file;
+    recording = await FrameRecording.open(sourceOf(blob));
+  } catch (error) {
+    post({ type: 'unreadable', message: error instanceof Error ? error.message : String(error) });
+    return;
+  }
+  close();
+  const handlers = {
+    onDescription: (description: SessionDescription) => post({ type: 'description', description }),
+    onEvent: (event: Event) => post({ type: 'event', event }),
+    onFrame: (frame: Frame, bytes: number) =>
+      post({ type: 'frame', frame, bytes }, [frame.storage]),
+    frameFor,
+    onFault: (message: string) => post({ type: 'unreadable', message }),
+  };
+  recorded = new RecordedSession(recording, handlers, now);
+  post({ type: 'recorded' });
+  recorded.start();
+  if (!isWatched) recorded.watch(false);
+}
+
 /** Returns a frame. The page returns its memory: see ToWorker, `reuse`. */
 function frameFor(): Frame {
   // A transferred buffer is detached and must be replaced, also if the frame needs no memory.
@@ -56,8 +97,9 @@ function frameFor(): Frame {
 
 async function request(key: number, method: MethodName, params: object): Promise<void> {
   try {
-    if (!session) throw new RequestError('disconnected', `${method}: not connected`);
-    const result = await session.request(method, params as Params<typeof method>);
+    const target = recorded ?? session;
+    if (!target) throw new RequestError('disconnected', `${method}: not connected`);
+    const result = await target.request(method, params as Params<typeof method>);
     post({ type: 'result', key, result });
   } catch (error) {
     if (!(error instanceof RequestError)) throw error;
@@ -82,6 +124,13 @@ self.onmessage = ({ data }: MessageEvent<ToWorker>) => {
       break;
     case 'acknowledge':
       session?.acknowledge(data.number);
+      recorded?.acknowledge(data.number);
+      break;
+    case 'play':
+      void play(data.file, data.page);
+      break;
+    case 'loop':
+      recorded?.loop(data.wanted);
       break;
     case 'reuse':
       spare.push(data.storage);
@@ -89,6 +138,7 @@ self.onmessage = ({ data }: MessageEvent<ToWorker>) => {
     case 'watch':
       isWatched = data.wanted;
       session?.watch(isWatched);
+      recorded?.watch(isWatched);
       break;
     case 'refresh':
       session?.refresh();

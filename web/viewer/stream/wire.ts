@@ -27,6 +27,10 @@ export type ToWorker =
   /** Returns the memory of an unused frame, by transfer. */
   | { type: 'reuse'; storage: ArrayBuffer }
   | { type: 'watch'; wanted: boolean }
+  /** Plays a file, or the file with this address, in place of a session. */
+  | { type: 'play'; file: Blob | string; page: string }
+  /** Selects whether a recording restarts after its end. */
+  | { type: 'loop'; wanted: boolean }
   /** Requests the newest frame in full detail. */
   | { type: 'refresh' }
   /** Selects the attributes in frames and their maximum errors. */
@@ -39,6 +43,10 @@ export type FromWorker =
   | { type: 'event'; event: Event }
   | { type: 'frame'; frame: Frame; bytes: number }
   | { type: 'clock'; offset: number }
+  /** A recording is open, and its description follows. */
+  | { type: 'recorded' }
+  /** The recording of `play` cannot be shown. A session continues. */
+  | { type: 'unreadable'; message: string }
   | { type: 'resume'; token: string }
   | { type: 'fault'; message: string }
   | { type: 'result'; key: number; result: unknown }

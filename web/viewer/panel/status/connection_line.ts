@@ -4,6 +4,7 @@ import { showObstacle } from '../obstacle';
 import { lossInWords } from './quality';
 
 const kConnected = 'Connected';
+const kRecorded = 'Recording';
 
 /** No text is shown if the first picture arrives within this time [ms]. */
 const kSoonMs = 1500;
@@ -16,6 +17,8 @@ export class ConnectionLine {
   private readonly first = element('connection-first', HTMLButtonElement);
   private countdown: number | undefined;
   private hasPicture = false;
+  /** The text while frames arrive. */
+  private connected = kConnected;
   private absence: number | undefined;
 
   /** `goToFirst` switches to the first session. `isNamed`: whether the page's address names one. */
@@ -42,8 +45,15 @@ export class ConnectionLine {
 
   /** Called after the session's reply. */
   join(): void {
-    this.line.dataset.state = 'open';
-    this.text.textContent = kConnected;
+    this.showConnected(kConnected);
+  }
+
+  /** Called when a recording plays in place of a session. */
+  showRecorded(): void {
+    window.clearInterval(this.countdown);
+    window.clearTimeout(this.absence);
+    this.retry.hidden = this.first.hidden = true;
+    this.showConnected(kRecorded);
   }
 
   /** Shows whether this viewer receives fewer frames because its connection or graphics are slow. */
@@ -52,9 +62,15 @@ export class ConnectionLine {
     window.clearTimeout(this.absence);
     showObstacle('server', undefined);
     const loss = lossInWords(header);
-    const text = loss === undefined ? kConnected : `Slow: ${loss}`;
+    const text = loss === undefined ? this.connected : `Slow: ${loss}`;
     this.line.dataset.slow = String(loss !== undefined);
     if (this.text.textContent !== text) this.text.textContent = text;
+  }
+
+  private showConnected(words: string): void {
+    this.connected = words;
+    this.line.dataset.state = 'open';
+    this.text.textContent = words;
   }
 
   /** Shows the reason in the middle of the page if there has been no picture yet. */
