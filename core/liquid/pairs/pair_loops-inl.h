@@ -8,6 +8,7 @@
 #endif
 
 #include <array>
+#include <bit>
 
 #include <hwy/highway.h>
 
@@ -203,6 +204,30 @@ struct Loops {
   }
 };
 
+#if HWY_TARGET == HWY_AVX2
+/// Writes the lanes of `values` whose bit in the mask is set to `found`, and undefined numbers to
+/// the next lanes. Returns the number of set bits. With this target, hn::Compress() copies its
+/// table to the stack in each call (Highway 1.0.3, g++ 12).
+template <class V, class Mask>
+HWY_INLINE std::size_t store_selected(V values, Mask mask, Index* found) {
+  const hn::ScalableTag<std::uint32_t> u;
+  std::uint8_t bits = 0;
+  hn::StoreMaskBits(u, mask, &bits);
+  const hn::Rebind<std::uint8_t, decltype(u)> bytes;
+  const auto lanes = hn::PromoteTo(u, hn::LoadU(bytes, kSelectedLanes[bits].data()));
+  hn::StoreU(hn::TableLookupLanes(values, hn::IndicesFromVec(u, lanes)), u, found);
+  return static_cast<std::size_t>(std::popcount(bits));
+}
+#else
+template <class V, class Mask>
+HWY_INLINE std::size_t store_selected(V values, Mask mask, Index* found) {
+  const hn::ScalableTag<std::uint32_t> u;
+  // A store of all lanes, because a compressing store to memory is microcoded on AMD's Zen 4.
+  hn::StoreU(hn::Compress(values, mask), u, found);
+  return hn::CountTrue(u, mask);
+}
+#endif
+
 std::size_t cull(const CullSlots& slots, Index begin, Index end, const CullBox& box, Index* found,
                  std::size_t count) {
   const hn::ScalableTag<float> d;
@@ -210,25 +235,29 @@ std::size_t cull(const CullSlots& slots, Index begin, Index end, const CullBox& 
   using V = hn::Vec<decltype(d)>;
   const std::size_t lanes = hn::Lanes(d);
   const V reach2 = hn::Set(d, box.reach * box.reach);
-  const auto beyond = [&](const float* column, std::size_t k, int axis) HWY_ATTR {
-    const V p = hn::LoadU(d, column + k);
-    const V below = hn::Sub(hn::Set(d, box.low[axis]), p);
-    const V above = hn::Sub(p, hn::Set(d, box.high[axis]));
-    return hn::Max(hn::Max(below, above), hn::Zero(d));
+  const V low_x = hn::Set(d, box.low[0]);
+  const V low_y = hn::Set(d, box.low[1]);
+  const V low_z = hn::Set(d, box.low[2]);
+  const V high_x = hn::Set(d, box.high[0]);
+  const V high_y = hn::Set(d, box.high[1]);
+  const V high_z = hn::Set(d, box.high[2]);
+  const auto beyond = [d](V p, V low, V high) HWY_ATTR {
+    return hn::Max(hn::Max(hn::Sub(low, p), hn::Sub(p, high)), hn::Zero(d));
   };
+  const float* const x = slots.x;
+  const float* const y = slots.y;
+  const float* const z = slots.z;
+  auto sources = hn::Add(hn::Iota(u, 0), hn::Set(u, slots.first_source + begin));
+  const auto next = hn::Set(u, static_cast<std::uint32_t>(lanes));
   for (std::size_t k = begin; k < end; k += lanes) {
-    const V dx = beyond(slots.x, k, 0);
-    const V dy = beyond(slots.y, k, 1);
-    const V dz = beyond(slots.z, k, 2);
+    const V dx = beyond(hn::LoadU(d, x + k), low_x, high_x);
+    const V dy = beyond(hn::LoadU(d, y + k), low_y, high_y);
+    const V dz = beyond(hn::LoadU(d, z + k), low_z, high_z);
     const V square = hn::MulAdd(dx, dx, hn::MulAdd(dy, dy, hn::Mul(dz, dz)));
     auto is_near = hn::Lt(square, reach2);
     if (end - k < lanes) is_near = hn::And(is_near, hn::FirstN(d, end - k));
-    const auto sources =
-        hn::Iota(u, static_cast<std::uint32_t>(slots.first_source + static_cast<Index>(k)));
-    const auto is_found = hn::RebindMask(u, is_near);
-    // A store of all lanes, because a compressing store to memory is microcoded on AMD's Zen 4.
-    hn::StoreU(hn::Compress(sources, is_found), u, found + count);
-    count += hn::CountTrue(u, is_found);
+    count += store_selected(sources, hn::RebindMask(u, is_near), found + count);
+    sources = hn::Add(sources, next);
   }
   return count;
 }

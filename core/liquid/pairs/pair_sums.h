@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -173,6 +174,18 @@ struct CullBox {
   const float* high;
   float reach;
 };
+
+/// The positions of the set bits of each byte, in ascending order. The rest is 0.
+inline constexpr std::array kSelectedLanes = [] {
+  std::array<std::array<std::uint8_t, 8>, 256> table{};
+  for (std::size_t byte = 0; byte < table.size(); ++byte) {
+    std::size_t count = 0;
+    for (std::uint8_t bit = 0; bit < 8; ++bit) {
+      if ((byte >> bit & 1) != 0) table[byte][count++] = bit;
+    }
+  }
+  return table;
+}();
 
 /// A function that searches the slots [begin, end) for sources near `box`. It writes their indices
 /// to `found`, starting at index `count`. The function returns the new count. `found` must have

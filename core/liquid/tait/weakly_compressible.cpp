@@ -21,12 +21,18 @@ Real own_excess(const StepContext& c, const VatMotion& motion, const LiquidModel
   const CellSortedPoints& points = c.work.of<LiquidScratch>().liquid;
   const Vec3 place(points.x[slot], points.y[slot], points.z[slot]);
   Real own = liquid.kernel.value(0);
+  const Real volume = c.model.rest_volume[points.grid.order()[slot]];
+  // An image adds at most the value at distance 0, and n walls have at most 2^n - 1 images.
+  const auto near = std::ranges::count_if(c.model.walls, [&](int wall) {
+    return wall_distance(*c.model.scene.vat, motion, wall, place) < liquid.support_radius / 2;
+  });
+  if (volume * own * static_cast<Real>(1 << near) <= 1) return 0;
   // An image is as far beyond a wall, edge or corner as the particle is inside.
   for_each_mirror(c.model, motion, place, liquid.support_radius / 2, [&](const Mirror& mirror) {
     const Real r = (place - mirror.place(place)).norm();
     if (r < liquid.support_radius) own += liquid.kernel.value(r);
   });
-  return std::max(Real{0}, c.model.rest_volume[points.grid.order()[slot]] * own - 1);
+  return std::max(Real{0}, volume * own - 1);
 }
 
 }  // namespace
