@@ -9,7 +9,7 @@ export class Lattice {
   readonly count: number;
   /** Integer coordinates, three for each particle. */
   readonly cells: Int32Array;
-  /** Neighbours, six for each particle; -1 if there is none. */
+  /** Neighbours, six for each particle; -1 without a neighbour. */
   private readonly neighbours: Int32Array;
   /** Whether the link to the next particle along an axis is torn; three for each particle. */
   private readonly torn: Uint8Array;
@@ -38,12 +38,12 @@ export class Lattice {
     }
   }
 
-  /** Returns the neighbour in a direction at rest; -1 if there is none. */
+  /** Returns the neighbour in a direction at rest; -1 without a neighbour. */
   neighbourAtRest(particle: number, direction: number): number {
     return this.neighbours[6 * particle + direction]!;
   }
 
-  /** Returns the neighbour in a direction; -1 if there is none, or if the link is torn. */
+  /** Returns the neighbour in a direction; -1 without a neighbour, or if the link is torn. */
   neighbour(particle: number, direction: number): number {
     const other = this.neighbours[6 * particle + direction]!;
     if (other === kNone || this.tears === 0) return other;
