@@ -1,6 +1,6 @@
 #include "server/cli/certificate_watch.h"
+#include "server/support/log.h"
 
-#include <spdlog/spdlog.h>
 #include <sys/stat.h>
 
 #include <csignal>
@@ -56,9 +56,9 @@ void CertificateWatch::read_again() {
   state_ = state_of(files_);  // before the read, so that a change during the read is seen later
   try {
     read_();
-    spdlog::info("new connections use the certificate that was read from {}", files_.front());
+    log_info("new connections use the certificate that was read from {}", files_.front());
   } catch (const std::exception& fault) {
-    spdlog::error("the previous certificate remains in use: {}", fault.what());
+    log_error("the previous certificate remains in use: {}", fault.what());
   }
 }
 

@@ -1,4 +1,3 @@
-#include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
 #include <atomic>
@@ -14,6 +13,7 @@
 #include "server/cli/common/command.h"
 #include "server/cli/replay_seeks.h"
 #include "server/messages/describe.h"
+#include "server/operations/log_format.h"
 #include "server/replay/replay_player.h"
 #include "server/rpc/method_table.h"
 
@@ -98,7 +98,7 @@ int play(const ReplayOptions& options, const Recording& recording, const Catalog
 }
 
 int replay(const ReplayOptions& options) {
-  spdlog::set_level(spdlog::level::err);
+  start_log("error", false);
   const Result<Recording> recording = read_file(options.file);
   if (!recording) return fail(options.file, recording.errors());
   const Result<Catalogue> catalogue = Catalogue::open(options.scenes_folder);

@@ -1,4 +1,3 @@
-#include <spdlog/spdlog.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -36,6 +35,7 @@
 #include "server/settings/serve_settings.h"
 #include "server/settings/setting_sources.h"
 #include "server/support/clock.h"
+#include "server/support/log.h"
 #include "server/transport/transport.h"
 
 namespace vat {
@@ -76,7 +76,7 @@ class StopSignal {
       if (cancelled) return;
       // By SIGTERM operators end a server that others use.
       if (signal == SIGINT) drain_time_ = std::chrono::milliseconds(0);
-      spdlog::info("stopping: {}", signal == SIGTERM ? "SIGTERM" : "SIGINT");
+      log_info("stopping: {}", signal == SIGTERM ? "SIGTERM" : "SIGINT");
       signals_.clear();  // the next one ends the process
       io_.stop();
     });
@@ -90,7 +90,7 @@ class StopSignal {
   std::chrono::milliseconds request(std::optional<std::chrono::milliseconds> drain_time) {
     const auto given = drain_time.value_or(usual_drain_time_);
     asio::post(io_, [this, given] {
-      spdlog::info("stopping: server.drain");
+      log_info("stopping: server.drain");
       drain_time_ = given;
       signals_.clear();
       io_.stop();
@@ -118,7 +118,7 @@ std::string viewer_url(const ServeSettings& options, std::uint16_t port) {
 void raise_file_limit(std::size_t connections) {
   const std::size_t allowed = raise_open_files(connections + kOtherFiles);
   if (allowed >= connections + kOtherFiles) return;
-  spdlog::warn(
+  log_warning(
       "the system allows {} open files (ulimit -n), too few for {} connections: the server will "
       "reject connections beyond about {}",
       allowed, connections, allowed - std::min(allowed, kOtherFiles));
@@ -139,7 +139,7 @@ TransportSettings transport_settings(const ServeSettings& options, SessionServer
   settings.max_message_bytes = options.limits.max_scene_message_bytes;
   settings.handshake_timeout = options.limits.handshake_time;
   settings.ping_interval = options.limits.ping_interval;
-  settings.report = [](std::string_view fault) { spdlog::error("internal error: {}", fault); };
+  settings.report = [](std::string_view fault) { log_error("internal error: {}", fault); };
   settings.count_refusal = [&](std::string_view limit) { sessions.count_refusal(limit); };
   settings.count_close = [&](std::uint16_t code) { sessions.count_close(code); };
   return settings;
@@ -174,9 +174,9 @@ int serve(const ServeSettings& options, const ServeAccess& access, const Catalog
   if (options.instructions != "best") {
     settings.instructions = parse_instruction_set(options.instructions).value();
   }
-  spdlog::info("instruction set: {}", to_string(settings.instructions));
+  log_info("instruction set: {}", to_string(settings.instructions));
   if (options.data == "none") {
-    spdlog::info("sessions exist in memory only (--data FOLDER stores them)");
+    log_info("sessions exist in memory only (--data FOLDER stores them)");
   } else {
     settings.data_folder = options.data;
   }
@@ -227,7 +227,7 @@ int load_and_serve(const ServeSettings& options) {
   if (!scene) return fail(options.scene, scene.errors());
   Result<StaticFiles> viewer = StaticFiles::read(options.web_folder);
   if (!viewer) return fail(options.web_folder, viewer.errors());
-  if (viewer.value().empty()) spdlog::warn("there is no viewer in {}", options.web_folder);
+  if (viewer.value().empty()) log_warning("there is no viewer in {}", options.web_folder);
   const Result<ServeAccess> access = serve_access(options);
   if (!access) return fail("access", access.errors());
   return serve(options, access.value(), catalogue.value(), scene.value(),
@@ -314,7 +314,7 @@ int run(CommandLine& line) {
   }
   start_log(line.settings.log_level, line.settings.log_format == "json");
   for (const std::string& one : unknown)
-    spdlog::warn("an environment variable is not a setting: {}", one);
+    log_warning("an environment variable is not a setting: {}", one);
   return load_and_serve(line.settings);
 }
 

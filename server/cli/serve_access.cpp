@@ -1,7 +1,5 @@
 #include "server/cli/serve_access.h"
 
-#include <spdlog/spdlog.h>
-
 #include <boost/asio/ip/address.hpp>
 #include <cstdlib>
 #include <fstream>
@@ -9,6 +7,7 @@
 #include <optional>
 
 #include "server/access/token.h"
+#include "server/support/log.h"
 
 namespace vat {
 namespace {
@@ -79,8 +78,8 @@ Result<ServeAccess> serve_access(const ServeSettings& settings) {
 void tell_access(const ServeSettings& settings, const ServeAccess& access, const std::string& url) {
   if (access.settings.mode == AccessMode::open) {
     if (is_for_this_machine(settings)) return;
-    spdlog::warn("OPEN ACCESS on {}: every client that reaches this address can control the server",
-                 settings.host);
+    log_warning("OPEN ACCESS on {}: every client that reaches this address can control the server",
+                settings.host);
     return;
   }
   if (access.made_token.empty()) return;

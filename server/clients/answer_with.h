@@ -1,11 +1,10 @@
 #pragma once
 
-#include <spdlog/spdlog.h>
-
 #include <exception>
 #include <string_view>
 
 #include "server/clients/pending_reply.h"
+#include "server/support/log.h"
 
 namespace vat {
 
@@ -16,10 +15,10 @@ void answer_with(PendingReply& reply, std::string_view what, Work&& work) {
   try {
     reply.answer(work());
   } catch (const StorageError& error) {
-    spdlog::error("{}: {}", what, error.what());
+    log_error("{}: {}", what, error.what());
     reply.answer(storage_failed(error.kind()));
   } catch (const std::exception& error) {
-    spdlog::error("{}: {}", what, error.what());
+    log_error("{}: {}", what, error.what());
     reply.answer(internal_error());
   }
 }

@@ -1,11 +1,10 @@
 #include "server/directory/access_control.h"
 
-#include <spdlog/spdlog.h>
-
 #include <memory>
 #include <utility>
 
 #include "core/support/check.h"
+#include "server/support/log.h"
 
 namespace vat {
 namespace {
@@ -59,7 +58,7 @@ std::optional<RpcResult> AccessControl::enter(PendingReply& reply, std::string_v
     return {};
   }
   const bool is_last = ++client->wrong_tokens >= access.max_wrong_tokens;
-  spdlog::warn("a wrong token, number {} of its connection", client->wrong_tokens);
+  log_warning("a wrong token, number {} of its connection", client->wrong_tokens);
   resources_.deferred->add(
       resources_.clock.now() + access.refusal_delay,
       [is_last, refused = std::make_shared<PendingReply>(std::move(reply))] {

@@ -1,7 +1,5 @@
 #include "server/directory/replay_opener.h"
 
-#include <spdlog/spdlog.h>
-
 #include <boost/asio/post.hpp>
 #include <exception>
 #include <utility>
@@ -12,6 +10,7 @@
 #include "server/replay/foreign_text.h"
 #include "server/replay/replay_run.h"
 #include "server/session/core/scene_loading.h"
+#include "server/support/log.h"
 
 namespace vat {
 namespace {
@@ -51,7 +50,7 @@ std::optional<RpcResult> ReplayOpener::import_recording(PendingReply& reply,
     try {
       result = read_import(name, size);
     } catch (const std::exception& error) {
-      spdlog::warn("recording.import failed: {}", error.what());
+      log_warning("recording.import failed: {}", error.what());
     }
     if (std::holds_alternative<RpcError>(result)) resources_.imports.forget(name);
     reply.answer(result);
@@ -146,10 +145,10 @@ void ReplayOpener::open_stored(PendingReply& reply, const ReplaySource& source,
               recording = std::make_shared<const Recording>(*std::move(made));
             }
           } catch (const StorageError& error) {
-            spdlog::error("no replay of session {}: {}", to_id(number), error.what());
+            log_error("no replay of session {}: {}", to_id(number), error.what());
             return pending->answer(storage_failed(error.kind()));
           } catch (const std::exception& error) {
-            spdlog::error("no replay of session {}: {}", to_id(number), error.what());
+            log_error("no replay of session {}: {}", to_id(number), error.what());
             return pending->answer(internal_error());
           }
           if (recording == nullptr) {
@@ -169,7 +168,7 @@ void ReplayOpener::open_recording(PendingReply& reply, std::shared_ptr<const Rec
   } catch (const StorageError& error) {
     reply.answer(not_allowed(error.what()));
   } catch (const std::exception& error) {
-    spdlog::error("replay.open failed: {}", error.what());
+    log_error("replay.open failed: {}", error.what());
     reply.answer(internal_error());
   }
 }
@@ -198,7 +197,7 @@ RpcResult ReplayOpener::make_replay(std::shared_ptr<const Recording> recording,
                                                  resources_.pool, resources_.slow_tick_gate);
   tables_.sessions.add(number, session, std::move(creator.place));
   session->start();
-  spdlog::info("session {} shows a recording of {}", to_id(number), shown);
+  log_info("session {} shows a recording of {}", to_id(number), shown);
   return Json{{"session", to_id(number)},
               {"tick", session->summary().tick},
               {"begin", begin},

@@ -2,8 +2,6 @@
 
 #include "server/directory/session_directory.h"
 
-#include <spdlog/spdlog.h>
-
 #include <boost/asio/post.hpp>
 #include <exception>
 #include <utility>
@@ -11,6 +9,7 @@
 #include "core/support/check.h"
 #include "server/clients/answer_with.h"
 #include "server/session/core/scene_loading.h"
+#include "server/support/log.h"
 
 namespace vat {
 
@@ -32,7 +31,7 @@ SessionDirectory::~SessionDirectory() {
   try {
     stop();
   } catch (const std::exception& error) {  // the members still end their threads
-    spdlog::error("the sessions did not stop in order: {}", error.what());
+    log_error("the sessions did not stop in order: {}", error.what());
   }
 }
 
@@ -101,7 +100,7 @@ std::variant<SessionId, RpcError> SessionDirectory::create(std::string name, con
   try {
     stored = store(name, scene);
   } catch (const StorageError& error) {
-    spdlog::error("a session cannot be stored: {}", error.what());
+    log_error("a session cannot be stored: {}", error.what());
     return storage_failed(error.kind());
   }
 
@@ -125,7 +124,7 @@ std::variant<SessionId, RpcError> SessionDirectory::create(std::string name, con
                                                  resources_.slow_tick_gate);
   tables_.sessions.add(number, session, std::move(creator.place));
   session->start();
-  spdlog::info("session {} created: {}", to_id(number), scene.name);
+  log_info("session {} created: {}", to_id(number), scene.name);
   return to_id(number);
 }
 

@@ -1,7 +1,5 @@
 // Ends of sessions and of the server.
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <boost/asio/post.hpp>
 #include <chrono>
@@ -10,6 +8,7 @@
 
 #include "core/support/check.h"
 #include "server/directory/session_directory.h"
+#include "server/support/log.h"
 
 namespace vat {
 namespace {
@@ -94,7 +93,7 @@ void SessionDirectory::close_session(SessionNumber number, Session::End end,
   if (resources_.saved_in_memory) resources_.saved_in_memory->states.remove_session(id);
   remove_tokens(id, end);
   tables_.sessions.remove(number);
-  spdlog::info("session {} closed: {}", id, reason);
+  log_info("session {} closed: {}", id, reason);
 }
 
 std::string SessionDirectory::metrics() {

@@ -1,7 +1,5 @@
 #include "server/directory/session_recoverer.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <boost/asio/post.hpp>
 #include <exception>
@@ -12,6 +10,7 @@
 #include "server/replay/log_replay.h"
 #include "server/replay/session_recovery.h"
 #include "server/session/core/scene_loading.h"
+#include "server/support/log.h"
 
 namespace vat {
 
@@ -46,10 +45,10 @@ void SessionRecoverer::recover(const StoredSession& stored) {
   try {
     finish(stored, make_session(stored));
   } catch (const Cancelled&) {
-    spdlog::info("session {}: recovery cancelled", to_id(stored.number));
+    log_info("session {}: recovery cancelled", to_id(stored.number));
   } catch (const std::exception& error) {
-    spdlog::error("session {} ({}) cannot be recovered, and stays in {} unchanged: {}",
-                  to_id(stored.number), stored.name, resources_.storage->folder(), error.what());
+    log_error("session {} ({}) cannot be recovered, and stays in {} unchanged: {}",
+              to_id(stored.number), stored.name, resources_.storage->folder(), error.what());
     finish(stored, nullptr);
   }
 }
@@ -68,8 +67,8 @@ std::shared_ptr<Session> SessionRecoverer::make_session(const StoredSession& sto
   auto session = std::make_shared<Session>(std::move(core), nullptr, resources_.pool,
                                            resources_.slow_tick_gate);
   const std::chrono::duration<double> time = CostClock::now() - begin;
-  spdlog::info("session {} is recovered at tick {}, in {:.2f} s", to_id(stored.number),
-               session->summary().tick, time.count());
+  log_info("session {} is recovered at tick {}, in {:.2f} s", to_id(stored.number),
+           session->summary().tick, time.count());
   return session;
 }
 

@@ -1,11 +1,10 @@
 #include "server/frames/frame_feed.h"
 
-#include <spdlog/spdlog.h>
-
 #include <boost/asio/post.hpp>
 #include <exception>
 #include <utility>
 #include "core/support/check.h"
+#include "server/support/log.h"
 #include "server/support/low_priority.h"
 
 namespace vat {
@@ -88,7 +87,7 @@ void FrameFeed::turn() {
   try {
     apply_pending_changes();
   } catch (const std::exception& error) {
-    spdlog::error("session {}: frames lost by a fault of the server: {}", session_, error.what());
+    log_error("session {}: frames lost by a fault of the server: {}", session_, error.what());
   }
   active_changes_.changes.clear();
   active_changes_.has_state = false;

@@ -1,11 +1,10 @@
 #include "server/history/session_log.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <utility>
 
 #include "core/support/check.h"
+#include "server/support/log.h"
 #include "server/support/stage_clock.h"
 
 namespace vat {
@@ -162,7 +161,7 @@ void SessionLog::bound_log(Storage& storage, std::uint64_t session, const Sessio
   storage.sessions().trim(session, moment.sequence, moment.loaded);
   // Entries that were appended meanwhile are counted twice, until the next trim.
   writing.log_bytes = storage.sessions().log_bytes(session);
-  spdlog::info("session s{}: its log was full, and begins at its newest checkpoint now", session);
+  log_info("session s{}: its log was full, and begins at its newest checkpoint now", session);
 }
 
 }  // namespace vat

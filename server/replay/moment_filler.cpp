@@ -1,6 +1,5 @@
 #include "server/replay/moment_filler.h"
 
-#include <spdlog/spdlog.h>
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "server/replay/replay_player.h"
+#include "server/support/log.h"
 #include "server/support/stage_clock.h"
 
 namespace vat {
@@ -47,7 +47,7 @@ MomentFiller::MomentFiller(std::shared_ptr<const Recording> recording,
       return;
     } catch (const std::exception& error) {
       // A viewer that plays it there receives the error. Earlier positions remain usable.
-      spdlog::info("a recording cannot be filled further: {}", error.what());
+      log_info("a recording cannot be filled further: {}", error.what());
     }
     is_done_ = true;
   });

@@ -1,7 +1,5 @@
 #include "server/replay/replay_run.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -13,6 +11,7 @@
 #include "server/replay/foreign_text.h"
 #include "server/session/core/saved_state.h"
 #include "server/session/core/scene_loading.h"
+#include "server/support/log.h"
 
 namespace vat {
 namespace {
@@ -102,7 +101,7 @@ bool ReplayRun::with_recorded(SessionCore& core, Action&& action) {
 }
 
 void ReplayRun::diverge(SessionCore& core, const std::string& reason) {
-  spdlog::warn("session {}: the recording differs: {}", core.id(), reason);
+  log_warning("session {}: the recording differs: {}", core.id(), reason);
   player_.stop_comparing();
   core.set_playing(false);
   divergence_ = Json{{"position", core.run().position()},

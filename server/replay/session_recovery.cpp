@@ -1,7 +1,5 @@
 #include "server/replay/session_recovery.h"
 
-#include <spdlog/spdlog.h>
-
 #include <memory>
 #include <string>
 #include <utility>
@@ -11,6 +9,7 @@
 #include "server/messages/describe.h"
 #include "server/replay/log_replay.h"
 #include "server/session/core/session_restore.h"
+#include "server/support/log.h"
 
 namespace vat {
 namespace {
@@ -65,8 +64,8 @@ std::optional<Simulation> SessionRecovery::begin_at_place(const CheckpointPlace&
     const std::optional<Checkpoint> checkpoint = storage_.checkpoints().read(place);
     if (checkpoint) return begin_at(*checkpoint);
   } catch (const StorageError& error) {
-    spdlog::warn("session s{}: its checkpoint at {} is skipped: {}", stored_.number, place.position,
-                 error.what());
+    log_warning("session s{}: its checkpoint at {} is skipped: {}", stored_.number, place.position,
+                error.what());
   }
   return {};
 }
@@ -81,8 +80,8 @@ std::optional<Simulation> SessionRecovery::begin_at(const Checkpoint& checkpoint
     start_.emplace(Start{std::move(moment), as_loaded.snapshot()});
     return std::move(simulation).value();
   } catch (const StorageError& error) {
-    spdlog::warn("session s{}: its state at {} is skipped: {}", stored_.number, checkpoint.position,
-                 error.what());
+    log_warning("session s{}: its state at {} is skipped: {}", stored_.number, checkpoint.position,
+                error.what());
     return {};
   }
 }
@@ -164,8 +163,7 @@ void SessionRecovery::repeat_last_entry(SessionCore& core, const LogEntry& entry
   try {
     repeat_entry(core, entry);
   } catch (const Diverged& refusal) {
-    spdlog::info("session s{}: {}, as it was when the server ended", stored_.number,
-                 refusal.what());
+    log_info("session s{}: {}, as it was when the server ended", stored_.number, refusal.what());
     storage_.sessions().refuse(stored_.number, entry.sequence);
   }
 }

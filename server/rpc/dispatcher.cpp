@@ -1,11 +1,10 @@
 #include "server/rpc/dispatcher.h"
 
-#include <spdlog/spdlog.h>
-
 #include <exception>
 #include <utility>
 
 #include "core/support/check.h"
+#include "server/support/log.h"
 
 namespace vat {
 namespace {
@@ -46,10 +45,10 @@ void Dispatcher::receive(const SessionDirectory::Sender& sender, std::string_vie
       reply.answer(*std::move(result));
     }
   } catch (const StorageError& error) {
-    spdlog::error("a message failed: {}", error.what());
+    log_error("a message failed: {}", error.what());
     client.send(write_reply(id.value_or(nullptr), storage_failed(error.kind())));
   } catch (const std::exception& error) {
-    spdlog::error("a message failed: {}", error.what());
+    log_error("a message failed: {}", error.what());
     client.send(write_reply(id.value_or(nullptr), internal_error()));
   }
 }

@@ -2,8 +2,6 @@
 
 #include "server/session/session.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <boost/asio/post.hpp>
 #include <chrono>
@@ -12,6 +10,7 @@
 
 #include "core/support/check.h"
 #include "server/session/core/command_entry.h"
+#include "server/support/log.h"
 
 namespace vat {
 namespace {
@@ -105,7 +104,7 @@ void Session::run_turn(Turn turn) {
     (this->*turn)();
     finish_turn();
   } catch (const std::exception& error) {
-    spdlog::error("session {}: paused by a fault of the server: {}", id(), error.what());
+    log_error("session {}: paused by a fault of the server: {}", id(), error.what());
     core_->set_playing(false);
     period_ = {};
     tick_timer_->cancel();

@@ -1,7 +1,5 @@
 #include "server/session/session_reads.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <ctime>
 #include <exception>
@@ -10,6 +8,7 @@
 #include "core/support/check.h"
 #include "server/session/core/session_run.h"
 #include "server/session/core/session_view.h"
+#include "server/support/log.h"
 #include "server/support/low_priority.h"
 
 namespace vat {
@@ -62,7 +61,7 @@ void ReadBatch::run() {
     try {
       answer(waiting, results);
     } catch (const std::exception& error) {
-      spdlog::error("a read was not answered: {}", error.what());
+      log_error("a read was not answered: {}", error.what());
     }
   }
   reads_.clear();
@@ -117,10 +116,10 @@ ReadBatch::Result ReadBatch::compute(const WaitingRead& waiting) {
     content["tick"] = view_->tick();
     return {std::make_shared<const std::string>(to_message_text(content) + '}'), {}};
   } catch (const StorageError& error) {
-    spdlog::error("a read failed: {}", error.what());
+    log_error("a read failed: {}", error.what());
     return {nullptr, storage_failed(error.kind())};
   } catch (const std::exception& error) {
-    spdlog::error("a read failed: {}", error.what());
+    log_error("a read failed: {}", error.what());
     return {nullptr, internal_error()};
   }
 }

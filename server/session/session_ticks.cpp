@@ -1,12 +1,11 @@
 // Ticks and timers of a session.
 
-#include <spdlog/spdlog.h>
-
 #include <chrono>
 #include <utility>
 
 #include "core/support/check.h"
 #include "server/session/session.h"
+#include "server/support/log.h"
 
 namespace vat {
 namespace {
@@ -100,9 +99,9 @@ void Session::run_tick(SteadyClock::time_point now, bool timed) {
   if (!done) return;
   update_summary();  // before the frame: its acknowledgement is answered with this tick or later
   core_->notifier().publish_tick();
-  spdlog::debug("session {}: tick {} took {:.6f} s, publishing {:.6f} s, late {:.6f} s", id(),
-                run.tick(), seconds(stepped - begin), seconds(CostClock::now() - stepped),
-                seconds(now - due));
+  log_debug("session {}: tick {} took {:.6f} s, publishing {:.6f} s, late {:.6f} s", id(),
+            run.tick(), seconds(stepped - begin), seconds(CostClock::now() - stepped),
+            seconds(now - due));
 }
 
 void Session::begin_seek(PendingReply reply, std::uint64_t position) {

@@ -1,12 +1,11 @@
 #include "server/storage/journal.h"
 
-#include <spdlog/spdlog.h>
-
 #include <cmath>
 #include <exception>
 #include <utility>
 
 #include "core/support/check.h"
+#include "server/support/log.h"
 
 namespace vat {
 namespace {
@@ -93,8 +92,8 @@ Journal::Failure Journal::try_write(std::span<Entry> entries) {
     reason = error.what();
   }
   const std::lock_guard lock(mutex_);
-  if (failure && !counts_.failing) spdlog::error("the journal cannot be written: {}", reason);
-  if (!failure && counts_.failing) spdlog::info("the journal is written again");
+  if (failure && !counts_.failing) log_error("the journal cannot be written: {}", reason);
+  if (!failure && counts_.failing) log_info("the journal is written again");
   counts_.failing = failure;
   if (!failure) {
     ++counts_.journal_commits;
@@ -118,7 +117,7 @@ void Journal::finish(std::span<Entry> entries, Failure failure) {
     try {
       entry.done(failure);
     } catch (const std::exception& error) {
-      spdlog::error("after a write to the journal: {}", error.what());
+      log_error("after a write to the journal: {}", error.what());
     }
   }
 }

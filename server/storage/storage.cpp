@@ -1,7 +1,5 @@
 #include "server/storage/storage.h"
 
-#include <spdlog/spdlog.h>
-
 #include <boost/asio/post.hpp>
 #include <chrono>
 #include <exception>
@@ -9,6 +7,7 @@
 #include <utility>
 #include <vector>
 #include "core/support/check.h"
+#include "server/support/log.h"
 
 namespace vat {
 namespace {
@@ -83,7 +82,7 @@ void Storage::run(const std::function<void()>& task) {
     task();
   } catch (const std::exception& error) {
     count_failure();
-    spdlog::error("storage: {}", error.what());
+    log_error("storage: {}", error.what());
   }
 }
 

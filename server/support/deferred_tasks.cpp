@@ -1,12 +1,11 @@
 #include "server/support/deferred_tasks.h"
 
-#include <spdlog/spdlog.h>
-
 #include <boost/asio/strand.hpp>
 #include <exception>
 #include <utility>
 #include <vector>
 #include "core/support/check.h"
+#include "server/support/log.h"
 
 namespace vat {
 
@@ -46,7 +45,7 @@ void DeferredTasks::run_due_tasks() {
     try {
       task();
     } catch (const std::exception& error) {
-      spdlog::error("a deferred task failed: {}", error.what());
+      log_error("a deferred task failed: {}", error.what());
     }
   }
 }

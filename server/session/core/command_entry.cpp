@@ -1,12 +1,11 @@
 #include "server/session/core/command_entry.h"
 
-#include <spdlog/spdlog.h>
-
 #include <utility>
 
 #include "core/support/check.h"
 #include "server/session/core/saved_state.h"
 #include "server/session/core/scene_loading.h"
+#include "server/support/log.h"
 
 namespace vat {
 namespace {
@@ -54,10 +53,10 @@ CommandResolution resolve_command(const SessionEnvironment& environment, const s
     if (command.row->name == kLoadMethod) return resolve_scene(environment, command);
     return resolve_state(environment, session, command);
   } catch (const StorageError& error) {
-    spdlog::error("session {}: {}", session, error.what());
+    log_error("session {}: {}", session, error.what());
     return storage_failed(error.kind());
   } catch (const std::exception& error) {
-    spdlog::error("session {}: {}", session, error.what());
+    log_error("session {}: {}", session, error.what());
     return internal_error();
   }
 }

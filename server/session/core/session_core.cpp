@@ -1,12 +1,11 @@
 #include "server/session/core/session_core.h"
 
-#include <spdlog/spdlog.h>
-
 #include <exception>
 #include <utility>
 
 #include "core/support/check.h"
 #include "server/session/core/command_entry.h"
+#include "server/support/log.h"
 
 namespace vat {
 
@@ -84,7 +83,7 @@ bool SessionCore::tick(SteadyClock::time_point now, bool timed) {
   const AdvanceReport report = run_.advance();
   notifier_.tell_guard(report);
   if (report.failed) {
-    spdlog::warn("session {}: paused by the guard at tick {}", context_.id, run_.tick());
+    log_warning("session {}: paused by the guard at tick {}", context_.id, run_.tick());
     set_playing(false);
     return false;
   }
@@ -146,10 +145,10 @@ ActionResult SessionCore::act(ParticipantNumber participant, const SessionAction
   try {
     return action(*this, participants_.find_or_add(participant));
   } catch (const StorageError& error) {
-    spdlog::error("session {}: {}", context_.id, error.what());
+    log_error("session {}: {}", context_.id, error.what());
     return storage_failed(error.kind());
   } catch (const std::exception& error) {
-    spdlog::error("session {}: a command failed: {}", context_.id, error.what());
+    log_error("session {}: a command failed: {}", context_.id, error.what());
     return internal_error();
   }
 }

@@ -1,12 +1,11 @@
 #include "server/session/core/session_people.h"
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <utility>
 #include <vector>
 
 #include "core/support/check.h"
+#include "server/support/log.h"
 
 namespace vat {
 namespace {
@@ -134,7 +133,7 @@ void SessionPeople::execute_release(const LogEntry& entry) {
   const auto grabs = participant->grabs;
   for (const auto& [grab, body] : grabs) {
     const Status ended = run_.simulation().grab_end(grab);
-    if (!ended) spdlog::warn("session {}: grab {} had already ended", context_.id, grab);
+    if (!ended) log_warning("session {}: grab {} had already ended", context_.id, grab);
     participants_.forget_grab(grab);
   }
 }

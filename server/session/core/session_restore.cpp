@@ -1,10 +1,9 @@
 #include "server/session/core/session_restore.h"
 
-#include <spdlog/spdlog.h>
-
 #include <utility>
 
 #include "core/support/check.h"
+#include "server/support/log.h"
 
 namespace vat {
 namespace {
@@ -36,8 +35,8 @@ void apply_progress(SessionCore& core, const SessionProgress& progress) {
 }
 
 void diverge(SessionCore& core, Divergence divergence) {
-  spdlog::error("session {}: paused; the recovered state differs from the stored one: {}",
-                core.id(), divergence.reason);
+  log_error("session {}: paused; the recovered state differs from the stored one: {}", core.id(),
+            divergence.reason);
   core.history().set_divergence(std::move(divergence));
   core.set_playing(false);
 }
