@@ -2,6 +2,10 @@
 
 #include <hwy/targets.h>
 
+#if HWY_ARCH_X86
+#include <cpuid.h>
+#endif
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -18,10 +22,18 @@ constexpr std::array kSets = {InstructionSet::baseline, InstructionSet::avx2,
 // Detection by the compiler's library. Highway's own detection executes, when it is loaded, an
 // instruction that valgrind does not know on every processor.
 #if HWY_ARCH_X86
+// clang 14 has no names for these two.
+bool has_lzcnt_and_f16c() {
+  constexpr unsigned kFeatures = 1;
+  constexpr unsigned kMoreFeatures = 0x80000001;
+  unsigned a = 0, b = 0, c = 0, d = 0;
+  if (__get_cpuid(kFeatures, &a, &b, &c, &d) == 0 || (c & bit_F16C) == 0) return false;
+  return __get_cpuid(kMoreFeatures, &a, &b, &c, &d) != 0 && (c & bit_LZCNT) != 0;
+}
+
 bool has_avx2() {
   return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
-         __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") &&
-         __builtin_cpu_supports("lzcnt") && __builtin_cpu_supports("f16c") &&
+         __builtin_cpu_supports("bmi") && __builtin_cpu_supports("bmi2") && has_lzcnt_and_f16c() &&
          __builtin_cpu_supports("aes") && __builtin_cpu_supports("pclmul");
 }
 

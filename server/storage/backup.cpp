@@ -94,7 +94,9 @@ void restore_part(const Part& part, const std::string& file, const std::string& 
   attach(database, file, "backup");
   Statement query = database.prepare("SELECT version FROM backup.versions WHERE file = ?");
   query.bind(0, std::string_view(part.file));
-  if (!query.step()) throw StorageError(StorageError::Kind::corrupt, file + " is incomplete");
+  if (!query.step()) {
+    throw StorageError(StorageError::Kind::corrupt, std::string(part.file) + " is missing in it");
+  }
   const std::int64_t version = query.integer(0);
   query.reset();
   database.execute("BEGIN");  // see copy_parts()
@@ -146,6 +148,9 @@ void restore_backup(const std::string& file, const std::string& folder) {
     throw StorageError(StorageError::Kind::failed, file + " does not exist");
   }
   inspect_database(file, kBackupSchema);
+  if (Database(file, Database::Mode::read).number("PRAGMA user_version") == 0) {
+    throw StorageError(StorageError::Kind::corrupt, file + " is empty");
+  }
   const DataFolder target(folder);
   if (fs::exists(target.file("vat.db"))) {
     throw StorageError(StorageError::Kind::failed, folder + " contains sessions already");
@@ -156,9 +161,9 @@ void restore_backup(const std::string& file, const std::string& folder) {
       remove_files(target.file(part.file));
       restore_part(part, file, target.file(part.file));
     }
-  } catch (const StorageError&) {
+  } catch (const StorageError& error) {
     for (const Part& part : parts()) remove_files(target.file(part.file));
-    throw;
+    throw StorageError(error.kind(), file + " cannot be restored: " + error.what());
   }
 }
 

@@ -162,7 +162,15 @@ std::vector<LogEntry> SessionStore::read(std::uint64_t session, std::uint64_t af
       database_.prepare(std::string(kSelectEntries) +
                         " WHERE session = ? AND sequence > ? ORDER BY sequence LIMIT ?");
   query.bind(0, session).bind(1, after).bind(2, std::uint64_t{kEntriesAtOnce});
-  while (query.step()) entries.push_back(to_log_entry(query));
+  while (query.step()) {
+    entries.push_back(to_log_entry(query));
+    // Callers read until there are no entries, which must not continue without end.
+    if (entries.back().sequence <= after) {
+      throw StorageError(StorageError::Kind::corrupt,
+                         database_.path() + ": the entries of a log are out of order");
+    }
+    after = entries.back().sequence;
+  }
   return entries;
 }
 

@@ -10,14 +10,15 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::write_file(folder.file("backup"), data, size);
   try {
     restore_backup(folder.file("backup"), folder.file("data"));
-  } catch (const StorageError&) {
+  } catch (const StorageError& error) {
+    fuzz::check_reason(error);
     VAT_CHECK(!std::filesystem::exists(folder.file("data/vat.db")));
     return 0;
   }
   try {
     fuzz::read_stores(folder.file("data"));
-  } catch (const StorageError&) {
-    return 0;  // a value that the schema allows and the store does not
+  } catch (const StorageError& error) {
+    fuzz::check_reason(error);  // a value that the schema allows and the store does not
   }
   return 0;
 }

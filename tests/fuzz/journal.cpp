@@ -10,8 +10,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   fuzz::write_file(folder.file("vat.db"), data, size);
   try {
     fuzz::read_stores(folder.path().string());
-  } catch (const StorageError&) {
-    return 0;
+  } catch (const StorageError& error) {
+    fuzz::check_reason(error);
   }
   return 0;
 }

@@ -2,6 +2,7 @@
 
 #include <fstream>
 #include <string>
+#include <string_view>
 
 #include "server/storage/checkpoint_store.h"
 #include "server/storage/saved_states.h"
@@ -15,6 +16,14 @@ inline void write_file(const std::string& path, const std::uint8_t* data, std::s
   std::ofstream file(path, std::ios::binary);
   file.write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
   VAT_CHECK(file.good());
+}
+
+/// Damaged data must be reported as such, not as a fault of the disk. SQLite reports a damaged size
+/// as lack of memory, and a damaged version of the file format as a read-only file.
+inline void check_reason(const StorageError& error) {
+  using enum StorageError::Kind;
+  VAT_CHECK(error.kind() == corrupt || error.kind() == newer || error.kind() == read_only ||
+            std::string_view(error.what()).ends_with("out of memory"));
 }
 
 /// Reads all that a recovery reads from the databases of a data folder. Throws StorageError.

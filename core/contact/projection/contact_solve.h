@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <ranges>
 #include <span>
 #include <vector>
 
@@ -111,7 +110,8 @@ struct ContactSolve {
       Real change = 0;
       for (const Index c : island) constraints[c].gradient = -constraints[c].impulse();
       for (const Index c : island) change = std::max(change, relax(constraints[c]));
-      for (const Index c : island | std::views::reverse) {
+      for (auto it = island.rbegin(); it != island.rend(); ++it) {
+        const Index c = *it;
         change = std::max(change, relax(constraints[c]));
       }
       if (change <= kTolerance) return round;

@@ -21,6 +21,10 @@ StorageError::Kind kind_of_code(int code) {
       return StorageError::Kind::read_only;
     case SQLITE_CORRUPT:
     case SQLITE_NOTADB:
+    // The statements are constant, so that only the content of a file can contradict them.
+    case SQLITE_ERROR:
+    case SQLITE_MISMATCH:
+    case SQLITE_CONSTRAINT:
       return StorageError::Kind::corrupt;
     default:
       return StorageError::Kind::failed;

@@ -243,6 +243,21 @@ TEST_F(StorageSessions, RefusedEntriesAreTold) {
   EXPECT_FALSE(store.find(number, 4));
 }
 
+TEST_F(StorageSessions, ADamagedOrderOfTheLogIsReported) {
+  std::uint64_t number = 0;
+  {
+    SessionStore store(path);
+    number = create(store);
+  }
+  // Texts are greater than all numbers, so that each read would return this entry.
+  Database(path, Database::Mode::create)
+      .execute(
+          "ALTER TABLE log RENAME TO old; CREATE TABLE log AS SELECT * FROM old;"
+          "UPDATE log SET sequence = 'x'");
+  SessionStore store(path);
+  EXPECT_THROW(store.read(number, 0), StorageError);
+}
+
 TEST_F(StorageSessions, LongLogsAreReadInParts) {
   SessionStore store(path);
   const std::uint64_t number = create(store);
