@@ -13,11 +13,11 @@ GENERATED = re.compile(r"// Written from .*; not to be edited\.\n")  # the first
 # The includes that each layer permits: prefixes of "quoted" headers, and of <angled> headers with a
 # folder or an extension. Headers of the standard library have neither.
 LAYERS = {
-    "core/": (("core/",), ("CL/", "Eigen/", "dlfcn.h", "hwy/")),
+    "core/": (("core/",), ("CL/", "Eigen/", "cpuid.h", "dlfcn.h", "hwy/")),
     "protocol/": (("core/", "protocol/"), ("nlohmann/", "tiny_obj_loader.h")),
     "server/": (
         ("core/", "protocol/", "server/"),
-        ("CLI/", "Eigen/", "boost/", "nlohmann/", "spdlog/", "websocketpp/", "unistd.h", "sys/",
+        ("CLI/", "Eigen/", "boost/", "fmt/", "nlohmann/", "spdlog/", "websocketpp/", "unistd.h", "sys/",
          "fcntl.h", "malloc.h", "poll.h", "openssl/", "sqlite3.h", "zstd.h"),
     ),
 }
