@@ -39,6 +39,9 @@ export class View {
   private style: LiquidStyle = 'splats';
   private phase = 1;
   private surfaces = 0;
+  private described: SessionDescription | undefined;
+  /** The reason for a style that was not chosen. */
+  private styleWords: string | undefined;
 
   /** `beforeDraw` is called once per animation frame. */
   constructor(
@@ -49,6 +52,7 @@ export class View {
   ) {
     this.stage = new Stage(canvas, this.shared, beforeDraw);
     this.stage.onDrawn = (at, follows) => this.watchPace(at, follows);
+    this.stage.onResolution = () => this.tell();
     this.world = new World(readTheme(), this.shared);
     this.scale = new ColourScale(this.shared.look);
     this.world.onChange = () => this.showSurface();
@@ -77,6 +81,10 @@ export class View {
   }
 
   describe(description: SessionDescription): void {
+    const { session, scene } = description;
+    const isNew = session !== this.described?.session || scene !== this.described.scene;
+    if (isNew) this.stage.restoreResolution();
+    this.described = description;
     this.world.describe(description);
     this.scale.forget();
     this.pace.restart();
@@ -141,7 +149,20 @@ export class View {
     this.askFor(settings);
     this.clip(settings);
     this.stage.canvas.dataset.liquid = style;
-    const all = [...(words ? [words] : []), ...this.world.marks.words];
+    this.styleWords = words;
+    this.tell();
+  }
+
+  private tell(): void {
+    const percent = Math.round(100 * this.stage.movingScale);
+    const parts = [
+      this.styleWords,
+      percent < 100
+        ? `In motion, the picture has ${percent} % of the resolution, to keep up with the display.`
+        : undefined,
+      ...this.world.marks.words,
+    ];
+    const all = parts.filter((words) => words !== undefined);
     for (const tell of this.listeners) tell(all);
   }
 
@@ -167,6 +188,7 @@ export class View {
   /** Selects the simpler liquid style on slow graphics, unless the user has chosen a style. */
   private watchPace(at: number, follows: boolean): void {
     if (this.isSlow || this.style !== 'fluid' || !this.world.fluid) return;
+    if (!this.stage.isAdapted) return; // a lower resolution comes first
     this.pace.add(at, follows);
     if (!this.pace.isSlow) return;
     this.isSlow = true;

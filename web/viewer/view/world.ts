@@ -215,6 +215,17 @@ export class World {
     return this.bodies.get(body)?.middle();
   }
 
+  /** Returns a body's properties with its present number of particles. */
+  describedBody(body: number): BodyDescription | undefined {
+    const view = this.bodies.get(body);
+    return view && { ...view.description, particles: view.count };
+  }
+
+  /** Returns the centre of a body, at the present phase. */
+  centreOf(body: number): Vector3 | undefined {
+    return this.bodies.get(body)?.centre();
+  }
+
   paint(look: Theme): void {
     this.look = look;
     this.ground.paint(look);

@@ -39,6 +39,8 @@ const kLeastOpacity = 0.6;
 const kReach = 1.42;
 /** Distributes the variants of bodies evenly. */
 const kGoldenRatio = 0.618034;
+/** The maximum number of particles for the centre of a body. */
+const kSample = 256;
 const kVeil = { opacity: 0.4, size: 1.7 };
 
 /**
@@ -260,6 +262,17 @@ export class BodyView {
     const away = places.map((place) => place.distanceToSquared(mean));
     const nearest = away.reduce((best, value, i) => (value < away[best]! ? i : best), 0);
     return { particle: this.columns.numberAt(nearest), position: places[nearest]! };
+  }
+
+  /** Returns the interpolated centre: of mass for rigid bodies, otherwise of a sample of particles. */
+  centre(): Vector3 | undefined {
+    if (!this.group.visible || this.count === 0) return undefined;
+    if (this.motion) return new Vector3().setFromMatrixPosition(this.group.matrix);
+    const every = Math.ceil(this.count / kSample);
+    const sum = new Vector3();
+    let count = 0;
+    for (let i = 0; i < this.count; i += every, ++count) sum.add(this.positionAt(i));
+    return sum.divideScalar(count);
   }
 
   /** Extends the box to contain all particles. */

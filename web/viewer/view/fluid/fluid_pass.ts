@@ -17,7 +17,7 @@ import { fluidCompositeMaterial } from './fluid_composite';
 import { smoothingMaterial } from './smoothing';
 
 /** The maximum number of rows of the textures; the surface is smooth, so more do not pay. */
-const kMostRows = 1000;
+export const kMostRows = 1000;
 
 /** Spacing of the samples of each smoothing pass, relative to the particle radius. */
 const kSmoothing = [2, 1.3];
@@ -66,6 +66,8 @@ export class FluidPass {
   private readonly result = screenMesh(this.composite);
   private readonly screen = new Scene();
   private readonly size = new Vector2();
+  /** The maximum number of rows of the textures. Photos have more than moving pictures. */
+  mostRows = kMostRows;
 
   constructor(private readonly uniforms: BehindUniforms) {
     this.screen.add(this.smoother, this.result);
@@ -104,7 +106,7 @@ export class FluidPass {
   private resize(renderer: WebGLRenderer): void {
     const { x, y } = renderer.getDrawingBufferSize(this.size);
     this.behind.setSize(x, y);
-    const scale = Math.min(1, kMostRows / y);
+    const scale = Math.min(1, this.mostRows / y);
     const [width, height] = [Math.ceil(scale * x), Math.ceil(scale * y)];
     for (const target of this.depths) target.setSize(width, height);
     const [thickWidth, thickHeight] = [Math.ceil(width / 2), Math.ceil(height / 2)];
