@@ -31,7 +31,7 @@ import { addressOf, linkedMoment } from './stream/address';
 import { now } from './stream/clock';
 import { Playout } from './stream/playout';
 import { kRecordedSession, linkedRecording } from './stream/recording_file';
-import { chosenSession, Stream } from './stream/stream';
+import { chosenSession, placeOf, Stream } from './stream/stream';
 import type { Report } from './stream/stream';
 import { WholePicture } from './panel/status/whole_picture';
 import { Push, Pusher } from './tools/push';
@@ -48,7 +48,12 @@ import './panel/phone.css';
 /** Connects the server's stream, the drawn world and the panel. */
 export class App {
   private readonly canvas = element('view', HTMLCanvasElement);
-  private readonly stream = new Stream(location.href, (report) => this.handle(report));
+  // The memory is per tab, so that reloading the page resumes the participant.
+  private readonly stream = new Stream(
+    placeOf(location.href),
+    (report) => this.handle(report),
+    sessionStorage,
+  );
   private readonly whole = new WholePicture(() => this.stream.refresh());
   private readonly playout = new Playout(this.stream);
   private readonly view = new View(this.canvas, this.stream, this.playout, () => this.showNewest());

@@ -4,8 +4,11 @@ import type { Pose } from '../view/base/pose';
 /** The time in which the camera covers 63 % of its distance to the body [s]. */
 const kLag = 0.15;
 
-/** Distance to the body / distance of the camera, from which the camera rests. */
-const kRest = 1e-4;
+/** Distance to the body / distance of the camera, below which the last step reaches the body. */
+const kLast = 1e-4;
+
+/** The same, below which the camera rests; larger than rounding errors. */
+const kRest = 1e-9;
 
 /** Moves a camera with a body: the target approaches the body, and the eye keeps its direction. */
 export class Chase {
@@ -19,10 +22,12 @@ export class Chase {
     const seconds = now - (this.last ?? now);
     this.last = now;
     const step = place.clone().sub(target);
-    const isNear = step.length() < kRest * eye.distanceTo(target);
-    if (step.lengthSq() === 0) return undefined;
-    if (this.hasLag && !isNear) step.multiplyScalar(1 - Math.exp(-seconds / kLag));
-    if (step.lengthSq() === 0) return undefined;
+    const share = step.length() / eye.distanceTo(target);
+    if (share < kRest) return undefined;
+    if (this.hasLag && share > kLast) {
+      if (seconds <= 0) return undefined;
+      step.multiplyScalar(1 - Math.exp(-seconds / kLag));
+    }
     return { eye: eye.clone().add(step), target: target.clone().add(step) };
   }
 }

@@ -194,6 +194,14 @@ export class Stage {
     return { eye: target.clone().addScaledVector(direction, distance), target };
   }
 
+  /** Ends drawing and releases the graphics context. */
+  dispose(): void {
+    this.renderer.setAnimationLoop(null);
+    this.controls.dispose();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+  }
+
   private showFramed(): void {
     if (!this.framed || this.framed.isEmpty()) return;
     const { target, distance } = fitBox(this.framed, kFirstView, this.camera, this.firstMargin);

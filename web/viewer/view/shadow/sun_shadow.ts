@@ -12,6 +12,8 @@ import {
   WebGLRenderTarget,
 } from 'three';
 import type { IUniform, Scene, WebGLRenderer } from 'three';
+import { kBody } from '../bodies/body_table';
+import type { TableUniforms } from '../bodies/body_table';
 import { kLayers } from '../base/layers';
 import { kSunWay } from '../base/light';
 import type { SunUniforms } from '../base/sun_uniforms';
@@ -30,8 +32,10 @@ const kAbove = 0.5;
 const kVertexShader = /* glsl */ `
   in vec3 before;
   uniform float phase;
+  ${kBody}
   void main() {
-    gl_Position = projectionMatrix * modelViewMatrix * vec4(mix(before, position, phase), 1.0);
+    vec4 world = this_body().to_world * vec4(mix(before, position, phase), 1.0);
+    gl_Position = projectionMatrix * viewMatrix * world;
   }
 `;
 
@@ -50,6 +54,7 @@ export class SunShadow {
   constructor(
     private readonly uniforms: SunUniforms,
     phase: IUniform<number>,
+    table: TableUniforms,
     isSoftware: boolean,
   ) {
     const { size, samples } = isSoftware ? kCoarse : kFine;
@@ -64,7 +69,7 @@ export class SunShadow {
     this.material = new ShaderMaterial({
       vertexShader: kVertexShader,
       fragmentShader: 'void main() { gl_FragColor = vec4(1.0); }',
-      uniforms: { phase },
+      uniforms: { phase, ...table },
     });
   }
 
