@@ -1,6 +1,6 @@
 import { Box3, MathUtils, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3 } from 'three';
 import { WebGLRenderer } from 'three';
-import type { Ray } from 'three';
+import type { Object3D, Ray, WebGLRenderTarget } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { directionOf } from './base/presets';
 import { isCalm } from './base/calm';
@@ -14,6 +14,7 @@ import { LiquidPass } from './liquid_pass';
 import type { LiquidStyle } from './base/liquid_style';
 import type { SharedUniforms } from './bodies/shared_uniforms';
 import type { SunShadow } from './shadow/sun_shadow';
+import { WarmUp } from './warm_up';
 import { graphicsOf } from './base/graphics';
 import type { Graphics } from './base/graphics';
 import type { Theme } from './base/theme';
@@ -44,6 +45,11 @@ export class Stage {
   /** The share of the display's rows and columns in the present picture. */
   private scale = 1;
   private counted = { passes: 0, calls: 0 };
+  /** The compilation of shaders, until the page has started. */
+  private warmUp: WarmUp | undefined;
+  private endWarmUp: (() => void) | undefined;
+  /** The properties of the browser's graphics. */
+  readonly graphics: Graphics;
   /** Called after each picture: its time [ms], and whether the previous animation frame was drawn. */
   onDrawn: (at: number, follows: boolean) => void = () => undefined;
   /** Called after a change of the resolution of moving pictures. */
@@ -64,7 +70,12 @@ export class Stage {
     shared: SharedUniforms,
     private readonly beforeDraw: () => void,
   ) {
+    Object.assign(canvas, this.size); // before the context, so that it is not allocated twice
     this.renderer = new WebGLRenderer({ canvas, antialias: true });
+    this.renderer.extensions.has('EXT_texture_filter_anisotropic'); // early, as `graphics`
+    this.graphics = graphicsOf(this.renderer); // early, because the browser answers in order
+    this.warmUp = new WarmUp(this.renderer, this.scene);
+    this.renderer.debug.checkShaderErrors = import.meta.env.DEV; // a check waits for the compiler
     this.renderer.info.autoReset = false; // a picture has several passes
     this.renderer.setPixelRatio(fullRatio());
     this.scene.add(this.splats.surface);
@@ -111,9 +122,10 @@ export class Stage {
     this.invalidate();
   }
 
-  /** The properties of the browser's graphics. */
-  get graphics(): Graphics {
-    return graphicsOf(this.renderer);
+  /** Resolves after the first picture with the present meshes. Later meshes are drawn at once. */
+  warm(): Promise<void> {
+    this.invalidate();
+    return new Promise((resolve) => (this.endWarmUp = resolve));
   }
 
   /** The work of the last picture: render passes and draw calls. */
@@ -281,12 +293,23 @@ export class Stage {
     // A picture that does not change is drawn once more in full resolution.
     const isLast = !stale && this.scale < 1 && at - this.drawnAt > kStillMs;
     if (!stale && !isLast) return;
+    if (this.warmUp?.advance(this.camera, (mesh) => this.targetOf(mesh)) === false) return;
     if (isLast) this.setScale(1);
     else if (drewLast) this.setScale(this.resolution.scale);
     this.stale = false;
     this.drawnAt = at;
     if (stale) this.onDrawn(at, drewLast);
     this.drawNow();
+    if (!this.endWarmUp) return;
+    this.warmUp = undefined;
+    this.endWarmUp();
+    this.endWarmUp = undefined;
+  }
+
+  /** Returns the target that a mesh is drawn to; null: the canvas. */
+  private targetOf({ layers }: Object3D): WebGLRenderTarget | null {
+    if (layers.isEnabled(kLayers.splats)) return this.splats.target;
+    return this.fluidLook && this.style === 'fluid' ? this.fluid.targetOf(layers) : null;
   }
 
   private setScale(scale: number): void {

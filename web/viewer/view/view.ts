@@ -80,8 +80,8 @@ export class View {
     this.sunShadow.fit(this.world.extent);
     this.world.group.add(floorShadow(floor, sun));
     this.world.drawSolids(solidOf, new JoinedSolids(this.shared));
+    await this.stage.warm();
     this.stage.canvas.dataset.solids = 'shapes';
-    this.stage.invalidate();
   }
 
   describe(description: SessionDescription): void {

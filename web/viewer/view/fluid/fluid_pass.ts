@@ -9,7 +9,7 @@ import {
   Vector2,
   WebGLRenderTarget,
 } from 'three';
-import type { Color, IUniform, PerspectiveCamera, WebGLRenderer } from 'three';
+import type { Color, IUniform, Layers, PerspectiveCamera, WebGLRenderer } from 'three';
 import { screenMesh } from '../base/screen';
 import { kLayers } from '../base/layers';
 import type { Theme } from '../base/theme';
@@ -82,6 +82,13 @@ export class FluidPass {
   paint(look: Theme): void {
     (this.composite.uniforms.sky_low!.value as Color).copy(look.skyLow);
     (this.composite.uniforms.sky_high!.value as Color).copy(look.skyHigh);
+  }
+
+  /** Returns the target that a mesh of these layers is drawn to; null: the canvas. */
+  targetOf(layers: Layers): WebGLRenderTarget | null {
+    if (layers.isEnabled(kLayers.fluidDepth)) return this.depths[0];
+    if (layers.isEnabled(kLayers.fluidThickness)) return this.thickness;
+    return layers.isEnabled(kLayers.marks) ? null : this.behind;
   }
 
   /** Draws the scene with its liquids to the canvas. */
