@@ -75,7 +75,6 @@ export class Stage {
     this.renderer.extensions.has('EXT_texture_filter_anisotropic'); // early, as `graphics`
     this.graphics = graphicsOf(this.renderer); // early, because the browser answers in order
     this.warmUp = new WarmUp(this.renderer, this.scene);
-    this.renderer.debug.checkShaderErrors = import.meta.env.DEV; // a check waits for the compiler
     this.renderer.info.autoReset = false; // a picture has several passes
     this.renderer.setPixelRatio(fullRatio());
     this.scene.add(this.splats.surface);

@@ -4,8 +4,8 @@ import { behindUniforms } from '../fluid/fluid_pass';
 import type { BehindUniforms } from '../fluid/fluid_pass';
 import { lookUniforms } from '../colour/look_uniforms';
 import type { LookUniforms } from '../colour/look_uniforms';
-import { tableUniforms } from './body_table';
-import type { TableUniforms } from './body_table';
+import { tableUniforms } from '../particles/body_table';
+import type { TableUniforms } from '../particles/body_table';
 import { floorUniforms } from '../particles/shadow_material';
 import type { FloorUniforms } from '../particles/shadow_material';
 

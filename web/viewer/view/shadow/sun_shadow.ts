@@ -12,8 +12,8 @@ import {
   WebGLRenderTarget,
 } from 'three';
 import type { IUniform, Scene, WebGLRenderer } from 'three';
-import { kBody } from '../bodies/body_table';
-import type { TableUniforms } from '../bodies/body_table';
+import { kBody } from '../particles/body_table';
+import type { TableUniforms } from '../particles/body_table';
 import { kLayers } from '../base/layers';
 import { kSunWay } from '../base/light';
 import type { SunUniforms } from '../base/sun_uniforms';

@@ -1,11 +1,12 @@
 import { BufferAttribute, BufferGeometry, Color, Group, Mesh } from 'three';
 import { kLayers } from '../base/layers';
-import { BodyTable } from '../bodies/body_table';
-import type { SharedUniforms } from '../bodies/shared_uniforms';
+import { BodyTable } from '../particles/body_table';
+import type { LookUniforms } from '../colour/look_uniforms';
 import { bodyUniforms } from '../particles/impostor';
 import { setFinish } from './solid';
 import type { Joinable, SolidSurface } from './solid';
 import { solidMaterial } from './solid_material';
+import type { Surroundings } from './solid_material';
 
 /** The attributes of solids with three coordinates per vertex. */
 const kVectors = ['position', 'normal', 'rest'] as const;
@@ -23,7 +24,7 @@ export class JoinedSolids {
   private members: Joinable[] = [];
   private known = '';
 
-  constructor(private readonly shared: SharedUniforms) {
+  constructor(private readonly shared: Surroundings & { look: LookUniforms }) {
     this.table = new BodyTable(shared.table);
   }
 

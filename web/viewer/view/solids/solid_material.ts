@@ -1,7 +1,7 @@
 import { DoubleSide, Matrix3, ShaderMaterial } from 'three';
 import type { Box3 } from 'three';
-import { kBody } from '../bodies/body_table';
-import type { TableUniforms } from '../bodies/body_table';
+import { kBody } from '../particles/body_table';
+import type { TableUniforms } from '../particles/body_table';
 import { kEnvironment } from '../base/environment';
 import { kSunlight } from '../base/sun_uniforms';
 import type { SunUniforms } from '../base/sun_uniforms';

@@ -1,6 +1,6 @@
 import { DataTexture, FloatType, RGBAFormat } from 'three';
 import type { IUniform, Matrix4 } from 'three';
-import type { BodyUniforms } from '../particles/impostor';
+import type { BodyUniforms } from './impostor';
 
 /** Texels of a row, and the number of values in a texel. */
 const kTexels = 7;
