@@ -34,11 +34,11 @@ describe('the resolution of moving pictures', () => {
   it('keeps up with a display of 30 Hz, but not with more than 60 Hz', () => {
     const slow = new Resolution();
     play(slow, () => 33.4, { until: 3000, follows: false, isIdle: true });
-    play(slow, () => 34, { from: 3000 });
+    play(slow, (scale) => Math.max(33.4, 40 * scale ** 2), { from: 3000 });
     expect(slow.scale).toBe(full);
     const fast = new Resolution();
     play(fast, () => 6.9, { until: 3000, follows: false, isIdle: true });
-    play(fast, () => 17, { from: 3000 });
+    play(fast, (scale) => 22 * scale ** 2, { from: 3000 });
     expect(fast.scale).toBe(full);
   });
 

@@ -43,7 +43,7 @@ const kScene: Scene = {
       kind: 'rigid',
       material: 'wood',
       spacing: 0.1,
-      shape: { type: 'box', size: [0.2, 0.2, 0.2] },
+      shape: { type: 'box', size: [0.3, 0.2, 0.1] },
     },
   ],
 };
@@ -73,7 +73,7 @@ describe('Pusher', () => {
   const speed = 2 * Math.sqrt(2 * 9.81) * 0.5; // of half the scene's height
 
   it.each([
-    ['of the scene', body, kScene, 500 * 0.2 ** 3],
+    ['of the scene', body, kScene, 500 * 0.3 * 0.2 * 0.1],
     ['estimated from particles', { ...body, name: 'drop' }, kScene, 500 * 8 * 0.1 ** 3],
     ['estimated without a scene', body, undefined, 1000 * 8 * 0.1 ** 3],
   ])('gives the body its speed by the mass %s', async (_, shown, scene, mass) => {
