@@ -125,7 +125,10 @@ function watchSizes(): void {
 }
 
 it('saves photos that are drawn at their size', async () => {
-  await visits.visit('rigid-stack', { before: (page) => page.addInitScript(watchSizes) });
+  await visits.visit('rigid-stack', {
+    viewport: { width: 800, height: 500 }, // another page, for the script
+    before: (page) => page.addInitScript(watchSizes),
+  });
   const { page } = visits.viewer;
   const before = await visits.viewer.stillPicture();
   await openMenu(page);

@@ -96,16 +96,26 @@ async function work(): Promise<{ passes: number; calls: number }> {
   });
 }
 
+const kSmall = { ...kLook, viewport: { width: 300, height: 200 }, deviceScaleFactor: 1 };
+
+async function expectWithinLimits(scene: string, view: string): Promise<void> {
+  await visits.visit(scene, { ...kSmall, tick: 1, view });
+  const { passes, calls } = await work();
+  expect(passes, scene).toBeGreaterThan(0);
+  expect(passes, scene).toBeLessThanOrEqual(kMostPasses);
+  expect(calls, scene).toBeGreaterThan(3);
+  expect(calls, scene).toBeLessThanOrEqual(kMostCalls);
+}
+
 it('draws every scene of the catalogue within the limits of passes and draw calls', async () => {
   const { scenes } = await visits.observer.request('scene.list', {});
   expect(scenes.length).toBeGreaterThan(10);
-  const small = { viewport: { width: 300, height: 200 }, deviceScaleFactor: 1 };
-  for (const { name } of scenes) {
-    await visits.visit(name, { ...kLook, ...small, tick: 1, view: 'liquid:fluid' });
-    const { passes, calls } = await work();
-    expect(passes, name).toBeGreaterThan(0);
-    expect(passes, name).toBeLessThanOrEqual(kMostPasses);
-    expect(calls, name).toBeGreaterThan(3);
-    expect(calls, name).toBeLessThanOrEqual(kMostCalls);
-  }
+  for (const { name } of scenes) await expectWithinLimits(name, 'liquid:fluid');
 });
+
+it.each(['particles', 'skin', 'both'])(
+  'draws many bodies within the limits as %s',
+  async (style) => {
+    await expectWithinLimits('brick-wall', `solids:${style}`);
+  },
+);

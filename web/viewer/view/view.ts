@@ -73,8 +73,7 @@ export class View {
     const { floor, look, sun } = this.shared;
     this.stage.sunShadow = this.sunShadow = new SunShadow(
       sun,
-      look.phase,
-      this.shared.table,
+      look,
       this.stage.graphics.isSoftware,
     );
     this.sunShadow.fit(this.world.extent);

@@ -24,6 +24,8 @@ import { Marks } from './marks/marks';
 import type { LiquidStyle } from './base/liquid_style';
 import type { Choice } from './base/settings';
 import type { SharedUniforms } from './bodies/shared_uniforms';
+import { BodyTable } from './particles/body_table';
+import { JoinedParticles } from './particles/joined_particles';
 import type { JoinedSolids } from './solids/joined_solids';
 import type { SolidMaker } from './solids/solid_of';
 import { Workshop } from './surface/workshop';
@@ -61,6 +63,9 @@ export class World {
   private colouring: Choice<'colour'> = 'material';
   private readonly workshop = new Workshop();
   private makeSolid: SolidMaker | undefined;
+  /** Rigid bodies that are drawn together. */
+  private readonly table: BodyTable;
+  private readonly particles: JoinedParticles;
   private joined: JoinedSolids | undefined;
   /** Called after changes between frames. */
   onChange: () => void = () => undefined;
@@ -74,7 +79,9 @@ export class World {
     private readonly shared: SharedUniforms,
   ) {
     this.ground = new Ground(look);
-    this.group.add(this.ground.mesh, this.marks.group);
+    this.table = new BodyTable(shared.look);
+    this.particles = new JoinedParticles(shared);
+    this.group.add(this.ground.mesh, this.marks.group, this.particles.group);
     this.paint(look);
   }
 
@@ -88,8 +95,16 @@ export class World {
 
   /** Called before each picture. */
   prepare(): void {
+    const rigid = [...this.bodies.values()].filter(({ isShownRigid }) => isShownRigid);
+    this.table.reserve(rigid.length);
+    rigid.forEach((view, row) => {
+      const sizes = { length: view.bodyLength, radius: view.description.radius };
+      this.table.write(row, view.group.matrix, view.uniforms, sizes);
+    });
+    this.table.finish();
+    this.particles.update(rigid.map((view, row) => ({ row, ...view.particles })));
     this.joined?.update(
-      [...this.bodies.values()].flatMap(({ joinable }) => (joinable ? [joinable] : [])),
+      rigid.flatMap(({ joinable: solid }, row) => (solid ? [{ row, solid }] : [])),
     );
   }
 

@@ -21,7 +21,7 @@ import { shadowMaterial } from '../particles/shadow_material';
 import type { SolidSurface } from '../solids/solid';
 import type { SolidMaker } from '../solids/solid_of';
 import { BodyPlaces } from './body_places';
-import type { Joinable } from '../solids/solid';
+import type { RigidParticles } from '../particles/joined_particles';
 import type { SharedUniforms } from './shared_uniforms';
 import { sphereMaterial } from '../particles/sphere_material';
 import { Skin } from '../surface/skin';
@@ -226,12 +226,26 @@ export class BodyView {
     return place === undefined ? undefined : this.places.at(place);
   }
 
-  /** The surface of a rigid body that can be drawn together with those of other bodies. */
-  get joinable(): Joinable | undefined {
-    const { solid, uniforms } = this;
-    const isShown = this.group.visible && solid?.mesh.visible === true;
-    if (!this.motion || !isShown || solid.opacity < 1) return undefined;
-    return { solid, uniforms, matrix: this.group.matrix };
+  /** Whether it is a rigid body with a picture. */
+  get isShownRigid(): boolean {
+    return this.motion !== undefined && this.group.visible;
+  }
+
+  /** The surface of a rigid body, if it can be drawn together with those of other bodies. */
+  get joinable(): SolidSurface | undefined {
+    const { solid } = this;
+    return solid?.mesh.visible && solid.opacity === 1 ? solid : undefined;
+  }
+
+  /** The particles of a rigid body. */
+  get particles(): Omit<RigidParticles, 'row'> {
+    const { spheres, spots, description } = this;
+    return { spheres, spots, places: description.local_positions ?? [] };
+  }
+
+  /** The longest side of the surface, 1 without a surface [m]. */
+  get bodyLength(): number {
+    return this.solid?.bodyLength ?? 1;
   }
 
   dispose(): void {

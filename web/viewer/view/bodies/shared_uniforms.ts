@@ -4,8 +4,6 @@ import { behindUniforms } from '../fluid/fluid_pass';
 import type { BehindUniforms } from '../fluid/fluid_pass';
 import { lookUniforms } from '../colour/look_uniforms';
 import type { LookUniforms } from '../colour/look_uniforms';
-import { tableUniforms } from '../particles/body_table';
-import type { TableUniforms } from '../particles/body_table';
 import { floorUniforms } from '../particles/shadow_material';
 import type { FloorUniforms } from '../particles/shadow_material';
 
@@ -15,7 +13,6 @@ export interface SharedUniforms {
   behind: BehindUniforms;
   look: LookUniforms;
   sun: SunUniforms;
-  table: TableUniforms;
 }
 
 export function sharedUniforms(): SharedUniforms {
@@ -24,6 +21,5 @@ export function sharedUniforms(): SharedUniforms {
     behind: behindUniforms(),
     look: lookUniforms(),
     sun: sunUniforms(),
-    table: tableUniforms(),
   };
 }

@@ -11,9 +11,9 @@ import {
   Vector3,
   WebGLRenderTarget,
 } from 'three';
-import type { IUniform, Scene, WebGLRenderer } from 'three';
-import { kBody } from '../particles/body_table';
-import type { TableUniforms } from '../particles/body_table';
+import type { Scene, WebGLRenderer } from 'three';
+import { kBody } from '../particles/body_shader';
+import type { LookUniforms } from '../colour/look_uniforms';
 import { kLayers } from '../base/layers';
 import { kSunWay } from '../base/light';
 import type { SunUniforms } from '../base/sun_uniforms';
@@ -50,11 +50,9 @@ export class SunShadow {
   private readonly material: ShaderMaterial;
   private readonly fitted = new Box3();
 
-  /** `phase` is that of the interpolation between frames. */
   constructor(
     private readonly uniforms: SunUniforms,
-    phase: IUniform<number>,
-    table: TableUniforms,
+    { phase, body_table }: Pick<LookUniforms, 'phase' | 'body_table'>,
     isSoftware: boolean,
   ) {
     const { size, samples } = isSoftware ? kCoarse : kFine;
@@ -69,7 +67,7 @@ export class SunShadow {
     this.material = new ShaderMaterial({
       vertexShader: kVertexShader,
       fragmentShader: 'void main() { gl_FragColor = vec4(1.0); }',
-      uniforms: { phase, ...table },
+      uniforms: { phase, body_table },
     });
   }
 

@@ -1,6 +1,5 @@
 import { BufferAttribute, BufferGeometry, Color, Group, Mesh } from 'three';
 import { kLayers } from '../base/layers';
-import { BodyTable } from '../particles/body_table';
 import type { LookUniforms } from '../colour/look_uniforms';
 import { bodyUniforms } from '../particles/impostor';
 import { setFinish } from './solid';
@@ -20,29 +19,20 @@ const kOrder = 2;
  */
 export class JoinedSolids {
   readonly group = new Group();
-  private readonly table: BodyTable;
   private members: Joinable[] = [];
   private known = '';
 
-  constructor(private readonly shared: Surroundings & { look: LookUniforms }) {
-    this.table = new BodyTable(shared.table);
-  }
+  constructor(private readonly shared: Surroundings & { look: LookUniforms }) {}
 
-  /** Draws these bodies with their present values. Called before each picture. */
+  /** Draws these bodies. Called before each picture. */
   update(bodies: readonly Joinable[]): void {
-    const key = bodies.map(({ solid }) => `${solid.mesh.uuid} ${solid.finish}`).join();
+    const key = bodies.map(({ solid, row }) => `${solid.mesh.uuid} ${solid.finish} ${row}`).join();
     if (key !== this.known) this.rebuild(bodies);
     this.known = key;
-    if (this.members.length === 0) return;
-    this.members.forEach(({ solid, matrix, uniforms }, row) => {
-      this.table.write(row, matrix, uniforms, solid.bodyLength);
-    });
-    this.table.finish();
   }
 
   dispose(): void {
     this.rebuild([]);
-    this.table.dispose();
     this.group.removeFromParent();
   }
 
@@ -61,14 +51,10 @@ export class JoinedSolids {
     for (const [finish, members] of byFinish) {
       if (members.length > 1) this.join(finish, members);
     }
-    this.table.reserve(this.members.length);
   }
 
   private join(finish: number, members: readonly Joinable[]): void {
-    const geometry = joinedGeometry(
-      members.map(({ solid }) => solid),
-      this.members.length,
-    );
+    const geometry = joinedGeometry(members);
     const uniforms = bodyUniforms(new Color(), this.shared.look, false);
     const material = solidMaterial(uniforms, this.shared, 1);
     setFinish(material, finish);
@@ -87,9 +73,9 @@ function showAlone({ mesh }: SolidSurface): void {
   mesh.layers.enable(kLayers.casters);
 }
 
-/** Returns the geometries of solids as one, with the rows from `first` on. */
-function joinedGeometry(solids: readonly SolidSurface[], first: number): BufferGeometry {
-  const parts = solids.map(({ mesh }) => mesh.geometry);
+/** Returns the geometries of solids as one, with their rows. */
+function joinedGeometry(bodies: readonly Joinable[]): BufferGeometry {
+  const parts = bodies.map(({ solid }) => solid.mesh.geometry);
   const counts = parts.map((part) => part.getAttribute('position').count);
   const total = counts.reduce((sum, count) => sum + count, 0);
   const columns = kVectors.map((name) => [name, new Float32Array(3 * total)] as const);
@@ -98,7 +84,7 @@ function joinedGeometry(solids: readonly SolidSurface[], first: number): BufferG
   let vertex = 0;
   parts.forEach((part, i) => {
     for (const [name, to] of columns) to.set(part.getAttribute(name).array, 3 * vertex);
-    rows.fill(first + i + 1, vertex, vertex + counts[i]!);
+    rows.fill(bodies[i]!.row + 1, vertex, vertex + counts[i]!);
     const index = part.getIndex();
     const corners = index ? index.count : counts[i]!;
     for (let c = 0; c < corners; ++c) triangles.push(vertex + (index ? index.getX(c) : c));

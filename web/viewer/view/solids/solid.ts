@@ -35,12 +35,11 @@ export interface SolidSurface {
   dispose(): void;
 }
 
-/** A rigid body whose surface can be drawn together with those of others. */
+/** The surface of a rigid body that can be drawn together with those of others. */
 export interface Joinable {
+  /** The row in the table of bodies, from 0 on. */
+  row: number;
   solid: SolidSurface;
-  uniforms: BodyUniforms;
-  /** From body to world axes. */
-  matrix: Matrix4;
 }
 
 /** A surface of constant form. That of a rigid body moves with the body's group. */

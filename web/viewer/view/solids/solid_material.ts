@@ -1,7 +1,6 @@
 import { DoubleSide, Matrix3, ShaderMaterial } from 'three';
 import type { Box3 } from 'three';
-import { kBody } from '../particles/body_table';
-import type { TableUniforms } from '../particles/body_table';
+import { kBody } from '../particles/body_shader';
 import { kEnvironment } from '../base/environment';
 import { kSunlight } from '../base/sun_uniforms';
 import type { SunUniforms } from '../base/sun_uniforms';
@@ -89,7 +88,6 @@ const kFragmentShader = /* glsl */ `
 export interface Surroundings {
   floor: FloorUniforms;
   sun: SunUniforms;
-  table: TableUniforms;
 }
 
 /** Returns the rotation and scale from rest coordinates to the grain: the longest axis first. */
@@ -106,7 +104,7 @@ export function grainOf(box: Box3): { toGrain: Matrix3; length: number } {
 /** Returns the material of a solid's surface. `length` is the body's longest side [m]. */
 export function solidMaterial(
   body: BodyUniforms,
-  { floor, sun, table }: Surroundings,
+  { floor, sun }: Surroundings,
   length: number,
 ): ShaderMaterial {
   return new ShaderMaterial({
@@ -115,7 +113,6 @@ export function solidMaterial(
     uniforms: {
       ...body,
       ...sun,
-      ...table,
       floor_z: floor.floor_z,
       body_length: { value: length },
       opacity: { value: 1 },
