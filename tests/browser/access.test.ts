@@ -53,6 +53,15 @@ describe.each(kLooks)('%s', (_, look) => {
     await page.waitForSelector(`#${id}`, { state: 'hidden' });
   });
 
+  it('menu for camera and pictures', async () => {
+    const { page } = visits.viewer;
+    await page.keyboard.press('c');
+    await page.waitForSelector('#photo');
+    await expectNoFault();
+    await page.keyboard.press('Escape');
+    await page.waitForSelector('#photo', { state: 'hidden' });
+  });
+
   it('colour legend, numbers of a particle, message', async () => {
     const view = 'colour:pressure,clip:y,cells:true,liquid:particles';
     await visits.visit('dam-break', { ...look, tick: 5, view });

@@ -2,17 +2,19 @@ import type { Event, Frame, SessionDescription } from '../client/index';
 import { RequestError } from '../client/index';
 import { matterOf } from './build/matter';
 import { SceneDocument } from './build/scene_document';
+import { CameraControl } from './camera/camera_control';
 import { Controls } from './controls';
 import { Curves } from './curves/curves';
 import { Grabber } from './grab/grabber';
+import { Held } from './grab/held';
 import { KeyGrab } from './grab/key_grab';
 import { Links } from './links/links';
-import { addCameraKeys } from './panel/camera_keys';
 import { ConnectionLine } from './panel/status/connection_line';
 import { Counters } from './panel/status/counters';
 import { element } from './panel/elements';
 import { describeError, needsControl } from './panel/errors';
 import { eventInWords } from './panel/event_words';
+import { ask } from './panel/desk';
 import { Hint } from './panel/hint';
 import { Inspector } from './panel/inspector';
 import { Keys } from './panel/keys';
@@ -24,13 +26,15 @@ import { LiveSummary } from './panel/status/live_summary';
 import { ThemeSwitch } from './panel/theme_switch';
 import { ViewOptions } from './panel/view_options';
 import { Company } from './people/company';
-import { addressOf } from './stream/address';
+import { linkParts } from './people/share';
+import { addressOf, linkedMoment } from './stream/address';
 import { now } from './stream/clock';
 import { Playout } from './stream/playout';
 import { kRecordedSession, linkedRecording } from './stream/recording_file';
-import { chosenSession, Stream } from './stream/stream';
+import { chosenSession, placeOf, Stream } from './stream/stream';
 import type { Report } from './stream/stream';
 import { WholePicture } from './panel/status/whole_picture';
+import { Push, Pusher } from './tools/push';
 import { HeldMarker } from './view/held_marker';
 import { linkedPose } from './view/base/pose';
 import { View } from './view/view';
@@ -44,7 +48,12 @@ import './panel/phone.css';
 /** Connects the server's stream, the drawn world and the panel. */
 export class App {
   private readonly canvas = element('view', HTMLCanvasElement);
-  private readonly stream = new Stream(location.href, (report) => this.handle(report));
+  // The memory is per tab, so that reloading the page resumes the participant.
+  private readonly stream = new Stream(
+    placeOf(location.href),
+    (report) => this.handle(report),
+    sessionStorage,
+  );
   private readonly whole = new WholePicture(() => this.stream.refresh());
   private readonly playout = new Playout(this.stream);
   private readonly view = new View(this.canvas, this.stream, this.playout, () => this.showNewest());
@@ -55,7 +64,10 @@ export class App {
     this.stage,
     this.world,
     this.marker,
-    this.stream.request,
+    (start, failed) =>
+      this.pushes
+        ? new Push(start, (body, drag) => void this.pusher.push(body, drag))
+        : new Held(this.stream.request, start, failed),
     (error) => this.refuse(error),
     (body, particle) => this.inspector.inspect(body, particle),
   );
@@ -67,7 +79,10 @@ export class App {
     },
     () => chosenSession(location.href) !== undefined,
   );
-  private readonly counters = new Counters(now);
+  private readonly counters = new Counters(now, () => ({
+    ...this.stage.work,
+    scale: this.stage.movingScale,
+  }));
   private readonly notices = new Notices();
   private readonly keys = new Keys();
   private readonly summary = new LiveSummary();
@@ -85,21 +100,58 @@ export class App {
     say: (words: string) => this.notices.add('warning', words),
   };
   private readonly document = new SceneDocument(this.stream.request);
-  private readonly company = new Company(this.view, this.desk, (body) => this.nameOfBody(body));
+  /** The address of the shown recording. */
+  private address = linkedRecording(location.href);
+  /** The parts of links that are known here. */
+  private readonly shown = linkParts(
+    () => this.controls.moment,
+    () => (this.isRecorded ? this.address : undefined),
+  );
+  private readonly pusher = new Pusher(
+    this.desk,
+    this.document,
+    (body) => this.world.describedBody(body),
+    () => this.world.height,
+  );
+  private readonly company = new Company(
+    this.view,
+    this.desk,
+    (body) => this.nameOfBody(body),
+    this.shown,
+  );
   private readonly controls = new Controls(this.desk, this.view, this.keys, {
     document: this.document,
     nameOfBody: (body) => this.nameOfBody(body),
-    placing: (isPlacing) => (this.grabber.isPaused = isPlacing),
+    marker: this.marker,
+    say: (words) => this.desk.say(words),
+    useTool: (tool) => {
+      this.grabber.isPaused = tool === undefined;
+      this.pushes = tool === 'push';
+    },
     go: (session) => this.go(session),
-    stream: this.stream,
+    stream: {
+      play: (file) => {
+        this.address = undefined;
+        this.stream.play(file);
+      },
+      loop: (wanted) => this.stream.loop(wanted),
+    },
+  });
+  private readonly camera = new CameraControl(this.view, this.keys, {
+    bodies: () => this.description?.bodies ?? [],
+    moment: () => ({ scene: this.description?.scene ?? '', time: this.shownTime }),
+    share: () => (this.company.share.isEnabled ? () => this.company.share.open() : undefined),
   });
   private readonly curves = new Curves(this.desk, () => this.counters.figures);
   private readonly links = new Links(this.desk, this.view);
   private readonly hint = new Hint();
   private shownTime = 0;
   private shownTick = 0;
-  /** The camera pose of the page's link; applied to the first description. */
+  /** Whether drags push bodies; otherwise they pull. */
+  private pushes = false;
+  /** The camera pose and the position of the page's link; applied to the first description. */
   private linkedPose = linkedPose(location.href);
+  private linkedMoment = linkedMoment(location.href);
   private description: SessionDescription | undefined;
   private clockOffset: number | undefined;
 
@@ -115,9 +167,8 @@ export class App {
     // Hidden pages are not drawn.
     document.addEventListener('visibilitychange', () => this.stream.watch(!document.hidden));
     this.stream.watch(!document.hidden);
-    const recording = linkedRecording(location.href);
-    if (recording === undefined) this.stream.open();
-    else this.stream.play(recording);
+    if (this.address === undefined) this.stream.open();
+    else this.stream.play(this.address);
   }
 
   private handle(report: Report): void {
@@ -191,6 +242,7 @@ export class App {
     // The user's view remains until another scene is loaded.
     if (isNew) this.stage.reframe();
     if (isNew) this.inspector.close();
+    this.camera.describe(description, isNew);
     // A reset, or a saved state.
     const isEarlier = description.tick < this.shownTick;
     this.shownTick = description.tick;
@@ -208,6 +260,20 @@ export class App {
     this.enable(true);
     if (isEntry) this.hint.begin();
     if (isEntry && description.session !== kRecordedSession) this.controls.enter();
+    if (description.replay) void this.seekLinked();
+  }
+
+  /** Pauses a replay or a recording at the position of the page's link. */
+  private async seekLinked(): Promise<void> {
+    const position = this.linkedMoment;
+    this.linkedMoment = undefined;
+    if (position === undefined) return;
+    if (await ask(this.desk, 'control.pause', {}))
+      await ask(this.desk, 'replay.seek', { position });
+  }
+
+  private get isRecorded(): boolean {
+    return this.description?.session === kRecordedSession;
   }
 
   /** Called when a recording is open, before its description. */
@@ -233,8 +299,8 @@ export class App {
     this.canvas.dataset.joined = String(isJoined);
     this.grabber.enable(isJoined && !this.description?.replay);
     // A recording has no participants, statistics and connections.
-    const hasServer = isJoined && this.description?.session !== kRecordedSession;
-    this.company.enable(hasServer);
+    const hasServer = isJoined && !this.isRecorded;
+    this.company.enable(hasServer, isJoined && (!this.isRecorded || this.address !== undefined));
     this.controls.enable(isJoined);
     this.summary.enable(isJoined);
     this.curves.enable(hasServer);
@@ -262,10 +328,7 @@ export class App {
       () => this.description?.bodies.map(({ body }) => body) ?? [],
       (body) => this.summary.showHeld(body === undefined ? undefined : this.nameOfBody(body)),
     );
-    addCameraKeys(keys, this.stage, () => {
-      this.stage.reframe();
-      this.stage.follow(this.world.bounds);
-    });
+    this.camera.addKeys();
   }
 
   private nameOfBody(id: number): string {
@@ -285,6 +348,7 @@ export class App {
   private showNewest(): void {
     this.playout.advance(now(), (frame) => this.showFrame(frame));
     this.view.move(now());
+    this.camera.update(now());
     this.grabber.update();
     this.company.cursors.update();
     this.controls.update();

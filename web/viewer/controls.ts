@@ -14,16 +14,17 @@ import { SceneFile } from './panel/scene_file';
 import { Scenes } from './panel/scenes';
 import { ReplayBar } from './replay/replay_bar';
 import { ask } from './panel/desk';
+import { leanInView } from './tools/tilt';
+import { Tools } from './tools/tools';
+import type { ToolSurroundings } from './tools/tools';
 import type { Desk } from './panel/desk';
 import type { Stream } from './stream/stream';
 import type { View } from './view/view';
 
 /** The page's functions that the controls use. */
-export interface Surroundings {
+export interface Surroundings extends ToolSurroundings {
   readonly document: SceneDocument;
   nameOfBody(body: number): string;
-  /** Reports whether the pointer places a body, so that it does not grab others. */
-  placing(isPlacing: boolean): void;
   /** Switches to another session; undefined: the server's first. */
   go(session: string | undefined): void;
   readonly stream: Pick<Stream, 'play' | 'loop'>;
@@ -37,6 +38,7 @@ export class Controls {
   private readonly sceneFile: SceneFile;
   private readonly gravity: Gravity;
   private readonly deviceTilt: DeviceTilt;
+  private readonly tools: Tools;
   private readonly pour: Pour;
   private readonly builder: Builder;
   private readonly vatPad: VatPad;
@@ -71,18 +73,15 @@ export class Controls {
     this.gravity = new Gravity((gravity) => ask(desk, 'world.set_gravity', { gravity }));
     this.deviceTilt = new DeviceTilt(
       ({ right, away }) => {
-        const look = view.stage.viewDirection().setZ(0).normalize();
-        this.gravity.lean([
-          { degrees: right, along: [look.y, -look.x] },
-          { degrees: away, along: [look.x, look.y] },
-        ]);
+        this.gravity.lean(leanInView(right, away, view.stage.viewDirection()));
       },
       (words) => desk.fail(words),
     );
+    this.tools = new Tools(keys, view, this.gravity, surroundings);
     this.pour = new Pour(desk, surroundings.document, view.world, keys);
-    this.builder = new Builder(desk, surroundings.document, view, keys, (isPlacing) =>
-      surroundings.placing(isPlacing),
-    );
+    this.builder = new Builder(desk, surroundings.document, view, keys, (isPlacing) => {
+      this.tools.placing = isPlacing;
+    });
     this.vatPad = new VatPad(desk);
     this.parameters = new ParameterForms(desk, surroundings.document);
     this.kept = new Kept(desk, {
@@ -143,6 +142,7 @@ export class Controls {
     this.scenes.enable(isLive);
     this.gravity.enable(isLive);
     this.deviceTilt.enable(isLive);
+    this.tools.enable(isLive);
     this.pour.enable(isLive);
     this.builder.enable(isLive);
     this.vatPad.enable(isLive);
@@ -154,6 +154,11 @@ export class Controls {
   /** Displays the tick of the current frame. */
   showTick(tick: number): void {
     this.replay.showTick(tick);
+  }
+
+  /** The position of a replay or a recording; undefined for live sessions. */
+  get moment(): number | undefined {
+    return this.replay.moment;
   }
 
   /** Called once per animation frame. */

@@ -138,6 +138,8 @@ export async function says({ page }: Viewer, id: string, words: string): Promise
 function closeAll(): void {
   for (const dialog of document.querySelectorAll('dialog')) dialog.close();
   document.getElementById('notices')!.replaceChildren();
+  document.getElementById('camera-menu')!.hidePopover();
+  document.getElementById('tool-grab')!.click();
   const sheet = document.getElementById('sheet')!;
   const isPhone = matchMedia('(max-width: 760px)').matches;
   if (isPhone && sheet.ariaExpanded === 'true') sheet.click();

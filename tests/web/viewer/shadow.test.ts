@@ -12,7 +12,7 @@ const kBox = new Box3(new Vector3(1, 2, 0), new Vector3(3, 2.5, 1));
 
 it('covers the scene and the space above it, the nearest to the sun first', () => {
   const { sun, look } = sharedUniforms();
-  const shadow = new SunShadow(sun, look.phase, false);
+  const shadow = new SunShadow(sun, look, false);
   expect(sun.sun_texel.value).toBe(0); // no shadows before the scene is known
   shadow.fit(kBox);
   const inMap = (point: Vector3): Vector3 => point.clone().applyMatrix4(sun.to_sun.value);

@@ -6,6 +6,8 @@ import { gravityOf, tiltOf } from '../../../web/viewer/panel/gravity/gravity';
 import { readScene } from '../../../web/viewer/panel/scene_file';
 import { onlyPaceDiffers, summarise } from '../../../web/viewer/panel/status/summary';
 import { shareLink } from '../../../web/viewer/people/share';
+import { linkedMoment } from '../../../web/viewer/stream/address';
+import { linkedRecording } from '../../../web/viewer/stream/recording_file';
 import { poseFromText, poseToText, turned } from '../../../web/viewer/view/base/pose';
 
 const kPose = { eye: new Vector3(1, -2, 1), target: new Vector3(0, 0, 0.5) };
@@ -139,12 +141,12 @@ describe('a link to share', () => {
   const page = 'http://host:8080/?session=s1#invite=old&view=x';
 
   it('names the session and drops what this page was opened with', () => {
-    expect(shareLink(page, 's2', {})).toBe('http://host:8080/?session=s2');
+    expect(shareLink(page, { session: 's2' }, {})).toBe('http://host:8080/?session=s2');
   });
 
   it('carries invitation, camera and view in the fragment, which no request has', () => {
     const link = new URL(
-      shareLink(page, 's2', { invite: 'abc', pose: kPose, view: 'arrows:true' }),
+      shareLink(page, { session: 's2' }, { invite: 'abc', pose: kPose, view: 'arrows:true' }),
     );
     expect(link.search).toBe('?session=s2');
     const parts = new URLSearchParams(link.hash.slice(1));
@@ -153,6 +155,21 @@ describe('a link to share', () => {
       camera: poseToText(kPose),
       view: 'arrows:true',
     });
+  });
+});
+
+describe('a link to a moment', () => {
+  it('names the recording and the position', () => {
+    const page = 'http://host/player/?recording=old.vatrec#at=3';
+    const link = new URL(shareLink(page, { recording: 'wave 1.vatrec' }, { moment: 120 }));
+    expect(link.searchParams.get('recording')).toBe('wave 1.vatrec');
+    expect(link.hash).toBe('#at=120');
+    expect(linkedRecording(link.href)).toBe('wave 1.vatrec');
+    expect(linkedMoment(link.href)).toBe(120);
+  });
+
+  it.each(['', '#at=', '#at=x', '#at=-1', '#at=1.5', '#at=1e3'])('"%s" has none', (hash) => {
+    expect(linkedMoment(`http://host/${hash}`)).toBeUndefined();
   });
 });
 

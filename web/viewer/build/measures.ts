@@ -33,7 +33,7 @@ export function meshVolume(vertices: readonly Vector[], triangles: readonly Vect
 }
 
 /** Returns the density of a material [kg/m³]. */
-export function densityOf({ materials }: Scene, material: string): number {
+export function densityOf({ materials }: Pick<Scene, 'materials'>, material: string): number {
   return materials.find(({ name }) => name === material)?.density ?? kDensity;
 }
 

@@ -5,7 +5,7 @@ import { showObstacle, watchGraphics } from '../panel/obstacle';
 import { ReplayBar } from '../replay/replay_bar';
 import { now } from '../stream/clock';
 import { Playout } from '../stream/playout';
-import { Stream } from '../stream/stream';
+import { placeOf, Stream } from '../stream/stream';
 import type { Report } from '../stream/stream';
 import { View } from '../view/view';
 import '../style.css';
@@ -15,7 +15,7 @@ import './player.css';
 /** The page of an exported recording: the picture and the time line. */
 class Player {
   private readonly canvas = element('view', HTMLCanvasElement);
-  private readonly stream = new Stream(location.href, (report) => this.handle(report));
+  private readonly stream = new Stream(placeOf(location.href), (report) => this.handle(report));
   private readonly playout = new Playout(this.stream);
   private readonly view = new View(this.canvas, this.stream, this.playout, () => this.draw());
   private readonly bar: ReplayBar;

@@ -1,13 +1,12 @@
 import { Plane, Vector3 } from 'three';
 import type { SessionDescription, Vector } from '../../client/index';
-import type { Request } from '../stream/stream';
 import type { HeldMarker } from '../view/held_marker';
 import type { Stage } from '../view/stage';
 import type { Picked, World } from '../view/world';
-import { Held } from './held';
+import type { Holding, HoldingMaker } from './holding';
 
 interface Grip {
-  held: Held;
+  held: Holding;
   /** The pointer's id; undefined: the keyboard. */
   pointer: number | undefined;
   body: number;
@@ -23,18 +22,19 @@ interface Grip {
 const kClickMs = 350;
 const kClickPixels = 5;
 
-/** Pulls bodies with the pointer: a press on a particle grabs it, elsewhere it rotates the view. */
+/** Drags bodies with the pointer: a press on a particle holds it, elsewhere it rotates the view. */
 export class Grabber {
   private grip: Grip | undefined;
   private enabled = false;
   /** Whether the pointer has another use. */
   isPaused = false;
 
+  /** `make` begins the effect of a drag. */
   constructor(
     private readonly stage: Stage,
     private readonly world: World,
     private readonly marker: HeldMarker,
-    private readonly request: Request,
+    private readonly make: HoldingMaker,
     private readonly refused: (error: unknown) => void,
     private readonly clicked: (body: number, particle: number) => void,
   ) {
@@ -55,13 +55,13 @@ export class Grabber {
 
   /** Ends the grab if the session has ended it: it began `anew`, or the body was removed. */
   describe({ bodies }: SessionDescription, anew: boolean): void {
-    const isThere = bodies.some(({ body }) => body === this.grip?.body);
-    if (anew || !isThere) this.release();
+    const { grip } = this;
+    if (grip && (anew || !bodies.some(({ body }) => body === grip.body))) this.release();
   }
 
-  /** Ends the grab. */
-  release(): void {
-    this.grip?.held.end();
+  /** Ends the grab. `isDone`: the user has completed the drag; otherwise it is cancelled. */
+  release(isDone = false): void {
+    this.grip?.held.end(isDone);
     this.forget();
   }
 
@@ -87,7 +87,8 @@ export class Grabber {
 
   /** Grabs a particle at its position; `shift` moves its target. */
   take(picked: Picked): void {
-    if (this.enabled && !this.grip) this.hold(picked, undefined, { x: 0, y: 0, at: -Infinity });
+    if (this.enabled && !this.isPaused && !this.grip)
+      this.hold(picked, undefined, { x: 0, y: 0, at: -Infinity });
   }
 
   /** Whether a grab by `take` is active. */
@@ -104,7 +105,7 @@ export class Grabber {
     const { body, particle, position } = picked;
     const start = { body, particle, target: toVector(position) };
     this.grip = {
-      held: new Held(this.request, start, (error) => this.fail(error)),
+      held: this.make(start, (error) => this.fail(error)),
       pointer,
       body,
       particle,
@@ -133,7 +134,7 @@ export class Grabber {
   private lift(event: PointerEvent): void {
     const { grip } = this;
     if (!grip || grip.pointer !== event.pointerId) return;
-    this.release();
+    this.release(event.type === 'pointerup');
     const { x, y, at } = grip.pressed;
     const isNear = Math.hypot(event.clientX - x, event.clientY - y) < kClickPixels;
     if (isNear && event.timeStamp - at < kClickMs) this.clicked(grip.body, grip.particle);

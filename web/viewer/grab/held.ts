@@ -1,5 +1,6 @@
 import type { Vector } from '../../client/index';
 import type { Request } from '../stream/stream';
+import type { Holding, Start } from './holding';
 
 /** The interval of renewal [ms], shorter than the server's time-out of idle grabs. */
 export const kRenewal = 5000;
@@ -8,7 +9,7 @@ export const kRenewal = 5000;
  * A grab on the server. While a move is unanswered, only the newest target is stored, so that fast
  * pointers do not flood slow connections. A resting pointer repeats its target to renew the grab.
  */
-export class Held {
+export class Held implements Holding {
   private grab: number | undefined;
   private next: Vector | undefined;
   private busy = true;
@@ -19,7 +20,7 @@ export class Held {
   /** `failed` is called once if the server rejects the grab, which then ends. */
   constructor(
     private readonly request: Request,
-    start: { body: number; particle: number; target: Vector },
+    start: Start,
     private readonly failed: (error: unknown) => void,
   ) {
     this.target = start.target;

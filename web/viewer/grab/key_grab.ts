@@ -18,7 +18,7 @@ const kWays: Readonly<Record<string, readonly [Way, number]>> = {
   pagedown: ['away', -1],
 };
 
-/** Grabs bodies by keys: a key selects the next body, arrows pull it. */
+/** Drags bodies by keys: a key holds the next body, arrows move the target. */
 export class KeyGrab {
   private body: number | undefined;
 
@@ -35,7 +35,7 @@ export class KeyGrab {
     keys.add({
       keys: ['b'],
       sign: 'B',
-      words: 'hold the next body; the arrows and page keys then pull it',
+      words: 'hold the next body; the arrows and page keys then pull or aim',
       act: () => this.next(),
     });
     keys.add({
@@ -45,10 +45,17 @@ export class KeyGrab {
       isEnabled: isHeld,
     });
     keys.add({
-      keys: ['escape', 'enter'],
+      keys: ['enter'],
+      sign: 'Enter',
+      words: 'release the body; the tool Push then pushes it',
+      act: () => this.letGo(true),
+      isEnabled: isHeld,
+    });
+    keys.add({
+      keys: ['escape'],
       sign: 'Esc',
-      words: 'release the body',
-      act: () => this.letGo(),
+      words: 'release the body without a push',
+      act: () => this.letGo(false),
       isEnabled: isHeld,
     });
   }
@@ -77,8 +84,8 @@ export class KeyGrab {
     this.grabber.shift(directions[way].multiplyScalar(sign * kStep * this.world.height));
   }
 
-  private letGo(): void {
-    this.grabber.release();
+  private letGo(isDone: boolean): void {
+    this.grabber.release(isDone);
     this.say(undefined);
   }
 }

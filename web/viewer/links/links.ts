@@ -20,6 +20,8 @@ export class Links {
   private newest: Result<'state.connections'> | undefined;
   private isJoined = false;
   private isBusy = false;
+  /** The switches at the last request. */
+  private shown = '';
 
   constructor(
     private readonly desk: Desk,
@@ -57,15 +59,22 @@ export class Links {
 
   private async ask(): Promise<void> {
     const { springs, contacts } = this.settings;
+    const shown = `${springs} ${contacts}`;
+    const isChanged = shown !== this.shown;
     if (!springs && !contacts) {
-      if (this.newest) this.newest = undefined;
-      return this.draw();
+      this.shown = shown;
+      this.newest = undefined;
+      if (isChanged) this.draw();
+      return;
     }
     if (!this.isJoined || this.isBusy || document.hidden) return;
     this.isBusy = true;
+    this.shown = shown;
     try {
+      const before = this.newest?.tick;
       this.newest = await this.desk.request('state.connections', { most: kMost });
-      this.draw();
+      // A paused scene is not drawn again.
+      if (isChanged || this.newest.tick !== before) this.draw();
     } catch (error) {
       // Switched off, because repeated requests would also be rejected.
       this.view.settings.change({ springs: false, contacts: false });

@@ -41,6 +41,7 @@ const kWords: Words = {
   map: { viridis: 'viridis', cividis: 'cividis', turbo: 'turbo', 'blue-red': 'blue to red' },
   clip: { off: 'nothing', x: 'along x', y: 'along y', z: 'along z' },
   smooth: { auto: 'automatic', on: 'between frames', off: 'frame by frame' },
+  orbit: { on: 'turns slowly', off: 'stands still' },
 };
 
 const kHidden = { className: 'view-words', hidden: true };
@@ -72,6 +73,7 @@ export class ViewOptions {
       this.toggle('springs', 'Springs by strain'),
       this.toggle('contacts', 'Contacts by force'),
       this.choice('smooth', 'Motion'),
+      this.choice('orbit', 'Idle camera'),
       this.delay,
       this.notice,
     );

@@ -6,6 +6,7 @@ import { Cursors } from './cursors';
 import { People } from '../stream/people';
 import { PeopleList } from './people_list';
 import { Share } from './share';
+import type { Outlook } from './share';
 
 /** The functions for several users: the list of participants, pointers, and sharing. */
 export class Company {
@@ -18,6 +19,7 @@ export class Company {
     view: View,
     private readonly desk: Desk,
     nameOfBody: (body: number) => string,
+    shown: Pick<Outlook, 'moment' | 'recording'>,
   ) {
     this.list = new PeopleList(this.people, {
       rename: (name) => this.call('participant.rename', { name }),
@@ -41,6 +43,12 @@ export class Company {
       get view() {
         return view.settings.text;
       },
+      get moment() {
+        return shown.moment;
+      },
+      get recording() {
+        return shown.recording;
+      },
     };
     this.share = new Share(this.people, outlook, desk);
   }
@@ -63,9 +71,10 @@ export class Company {
     this.call('control.hand_over', { participant });
   }
 
-  enable(enabled: boolean): void {
+  /** `canShare`: whether a link can open what the page shows. */
+  enable(enabled: boolean, canShare: boolean): void {
     this.list.enable(enabled);
-    this.share.enable(enabled);
+    this.share.enable(canShare);
   }
 
   private call<M extends MethodName>(method: M, params: Params<M>, done?: string): void {

@@ -36,6 +36,7 @@ export class ReplayBar {
   private replay: SessionDescription['replay'];
   private tickSeconds = 0;
   private status: SessionStatus | undefined;
+  private position: number | undefined;
 
   constructor(
     private readonly desk: Desk,
@@ -72,7 +73,7 @@ export class ReplayBar {
     }
     this.title.textContent = `Recording of “${name}”`;
     this.timeline.describe({ ...replay, tickSeconds });
-    this.timeline.show(replay.position);
+    this.showPosition(replay.position);
     this.showDivergence(undefined);
     if (isNew) this.words.textContent = '';
     void this.refresh();
@@ -86,11 +87,21 @@ export class ReplayBar {
     else if (event === 'replay.ended') this.words.textContent = 'The recording has ended.';
   }
 
+  /** The shown position; undefined if the session is not a replay. */
+  get moment(): number | undefined {
+    return this.replay && this.position;
+  }
+
   /** Displays the tick of the current frame. */
   showTick(tick: number): void {
     const { replay, status } = this;
     if (!replay || status?.position === undefined || tick < status.tick) return;
-    this.timeline.show(Math.min(status.position + tick - status.tick, replay.end));
+    this.showPosition(Math.min(status.position + tick - status.tick, replay.end));
+  }
+
+  private showPosition(position: number): void {
+    this.position = position;
+    this.timeline.show(position);
   }
 
   /** Moves the names to their present positions in the picture. */
@@ -101,7 +112,7 @@ export class ReplayBar {
   private showStatus(status: SessionStatus): void {
     this.status = status;
     if (!this.replay || status.position === undefined) return;
-    this.timeline.show(status.position);
+    this.showPosition(status.position);
     this.play.textContent = status.playing ? 'Pause' : 'Play';
     if (status.position < this.replay.end && this.words.dataset.diverged !== 'true') {
       this.words.textContent = '';

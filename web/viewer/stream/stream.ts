@@ -17,6 +17,24 @@ interface Waiting {
 
 const kResumeKey = 'vat.resume';
 
+/** The server and the session of a stream, and the address that recordings are relative to. */
+export interface Place {
+  url: string;
+  session: string | undefined;
+  token: string | undefined;
+  base: string;
+}
+
+/** Returns the server and the session of a page of the server. */
+export function placeOf(page: string): Place {
+  return {
+    url: streamUrl(page),
+    session: chosenSession(page),
+    token: givenToken(page),
+    base: page,
+  };
+}
+
 /** The page's interface to the worker that owns the connection. */
 export class Stream {
   private readonly worker = new Worker(new URL('./stream.worker.ts', import.meta.url), {
@@ -27,12 +45,13 @@ export class Stream {
   private isRecorded = false;
   private session: string | undefined;
 
+  /** `memory` keeps the token that resumes the participant; without it, a new one joins. */
   constructor(
-    /** The address of this page. */
-    private readonly page: string,
+    private readonly place: Place,
     private readonly onReport: (report: Report) => void,
+    private readonly memory?: Pick<Storage, 'getItem' | 'setItem'>,
   ) {
-    this.session = chosenSession(page);
+    this.session = place.session;
     this.worker.onerror = () => onReport({ type: 'broken' });
     this.worker.onmessage = ({ data }: MessageEvent<FromWorker>) => this.handle(data);
   }
@@ -42,10 +61,10 @@ export class Stream {
     this.isRecorded = false;
     this.post({
       type: 'open',
-      url: streamUrl(this.page),
+      url: this.place.url,
       session: this.session,
-      token: givenToken(this.page),
-      resume: sessionStorage.getItem(kResumeKey) ?? undefined,
+      token: this.place.token,
+      resume: this.memory?.getItem(kResumeKey) ?? undefined,
     });
   }
 
@@ -58,7 +77,7 @@ export class Stream {
 
   /** Plays a recording of frames in place of a session: a file, or its address on this server. */
   play(file: Blob | string): void {
-    this.post({ type: 'play', file, page: this.page });
+    this.post({ type: 'play', file, page: this.place.base });
   }
 
   /** Selects whether a recording restarts after its end; initially selected. */
@@ -98,6 +117,11 @@ export class Stream {
     this.post({ type: 'attributes', attributes });
   }
 
+  /** Ends the connection or the recording for ever. */
+  close(): void {
+    this.worker.terminate();
+  }
+
   private post(message: ToWorker, transfer: Transferable[] = []): void {
     this.worker.postMessage(message, transfer);
   }
@@ -109,8 +133,7 @@ export class Stream {
       const { kind, message: text, code, data } = message.refusal;
       this.take(message.key)?.reject(new RequestError(kind, text, code, data));
     } else if (message.type === 'resume') {
-      // Stored per tab, so that reloading the page resumes the participant.
-      sessionStorage.setItem(kResumeKey, message.token);
+      this.memory?.setItem(kResumeKey, message.token);
     } else {
       if (message.type === 'recorded') this.isRecorded = true;
       this.onReport(message);

@@ -28,10 +28,11 @@ function post(message: FromWorker, transfer: Transferable[] = []): void {
   self.postMessage(message, { transfer });
 }
 
-/** Returns whether the page's server answers HTTP. */
-async function probe(): Promise<boolean> {
+/** Returns whether the server of this WebSocket address answers HTTP. */
+async function probe(url: string): Promise<boolean> {
+  const address = new URL('/healthz', url.replace(/^ws/, 'http'));
   try {
-    return (await fetch('/healthz', { cache: 'no-store' })).ok;
+    return (await fetch(address, { cache: 'no-store' })).ok;
   } catch {
     return false; // fetch throws if the server is unreachable
   }
@@ -40,7 +41,13 @@ async function probe(): Promise<boolean> {
 function open(entrance: Entrance): void {
   close();
   session = new Session(
-    { ...entrance, socket: WebSocket, now, probe, errorInRadii: kErrorInRadii },
+    {
+      ...entrance,
+      socket: WebSocket,
+      now,
+      probe: () => probe(entrance.url),
+      errorInRadii: kErrorInRadii,
+    },
     {
       onState: (state) => post({ type: 'state', state }),
       onJoined: (joined) => post({ type: 'joined', joined }),

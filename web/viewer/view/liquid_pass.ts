@@ -50,7 +50,7 @@ const kFragmentShader = /* glsl */ `
  */
 export class LiquidPass {
   readonly surface: Mesh<BufferGeometry, ShaderMaterial>;
-  private readonly target = new WebGLRenderTarget(1, 1, { count: 2, type: HalfFloatType });
+  readonly target = new WebGLRenderTarget(1, 1, { count: 2, type: HalfFloatType });
 
   constructor() {
     const [shape, tint] = this.target.textures;

@@ -1,22 +1,30 @@
-import { Box3, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3, WebGLRenderer } from 'three';
-import type { Ray } from 'three';
+import { Box3, MathUtils, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3 } from 'three';
+import { WebGLRenderer } from 'three';
+import type { Object3D, Ray, WebGLRenderTarget } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import { directionOf } from './base/presets';
+import { isCalm } from './base/calm';
 import { fitBox } from './base/fit';
 import type { Pose } from './base/pose';
-import { FluidPass } from './fluid/fluid_pass';
+import { FluidPass, kMostRows } from './fluid/fluid_pass';
 import type { FluidLook } from './fluid/fluid_pass';
 import { kLayers } from './base/layers';
+import { Resolution } from './base/resolution';
 import { LiquidPass } from './liquid_pass';
 import type { LiquidStyle } from './base/liquid_style';
 import type { SharedUniforms } from './bodies/shared_uniforms';
 import type { SunShadow } from './shadow/sun_shadow';
+import { WarmUp } from './warm_up';
 import { graphicsOf } from './base/graphics';
 import type { Graphics } from './base/graphics';
 import type { Theme } from './base/theme';
 
 /** Direction of the initial camera from the centre of the scene; z is up. */
-const kFirstView = new Vector3(0.42, -1, 0.5).normalize();
+const kFirstView = directionOf('corner');
 const kFirstMargin = 1.15;
+
+/** A picture without a successor for this time is still [ms]. */
+const kStillMs = 300;
 
 /** Renderer, camera and its controls. Draws after changes, at most once per animation frame. */
 export class Stage {
@@ -32,11 +40,29 @@ export class Stage {
   sunShadow: SunShadow | undefined;
   private stale = true;
   private drewLast = false;
+  private drawnAt = 0;
+  private readonly resolution = new Resolution();
+  /** The share of the display's rows and columns in the present picture. */
+  private scale = 1;
+  private counted = { passes: 0, calls: 0 };
+  /** The compilation of shaders, until the page has started. */
+  private warmUp: WarmUp | undefined;
+  private endWarmUp: (() => void) | undefined;
+  /** The properties of the browser's graphics. */
+  readonly graphics: Graphics;
   /** Called after each picture: its time [ms], and whether the previous animation frame was drawn. */
   onDrawn: (at: number, follows: boolean) => void = () => undefined;
+  /** Called after a change of the resolution of moving pictures. */
+  onResolution: () => void = () => undefined;
+  /** Called before each picture. */
+  prepare: () => void = () => undefined;
+  /** Called when the user begins to move the camera. */
+  onMoved: () => void = () => undefined;
   private firstMargin = kFirstMargin;
-  /** The box in the initial view; undefined after the user has rotated it. */
+  /** The box in the initial view; undefined after the camera was moved. */
   private framed: Box3 | undefined = new Box3();
+  /** The box of the scene. */
+  private readonly bounds = new Box3();
 
   /** `beforeDraw` is called once per animation frame. */
   constructor(
@@ -44,23 +70,36 @@ export class Stage {
     shared: SharedUniforms,
     private readonly beforeDraw: () => void,
   ) {
+    Object.assign(canvas, this.size); // before the context, so that it is not allocated twice
     this.renderer = new WebGLRenderer({ canvas, antialias: true });
-    this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
+    this.renderer.extensions.has('EXT_texture_filter_anisotropic'); // early, as `graphics`
+    this.graphics = graphicsOf(this.renderer); // early, because the browser answers in order
+    this.warmUp = new WarmUp(this.renderer, this.scene);
+    this.renderer.info.autoReset = false; // a picture has several passes
+    this.renderer.setPixelRatio(fullRatio());
     this.scene.add(this.splats.surface);
     this.fluid = new FluidPass(shared.behind);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
-    this.controls.enableDamping = true;
+    this.controls.enableDamping = !isCalm();
     this.controls.dampingFactor = 0.12;
     this.controls.maxPolarAngle = 0.495 * Math.PI; // the camera stays above the floor
     this.controls.addEventListener('change', () => this.invalidate());
-    this.controls.addEventListener('start', () => (this.framed = undefined));
+    this.controls.addEventListener('start', () => {
+      this.framed = undefined;
+      this.onMoved();
+    });
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement ?? canvas);
     this.renderer.setAnimationLoop(() => this.draw());
   }
 
   invalidate(): void {
     this.stale = true;
+  }
+
+  /** Whether the next animation frame draws a picture. */
+  get isStale(): boolean {
+    return this.stale;
   }
 
   /** Whether the pointer rotates the view. */
@@ -82,9 +121,38 @@ export class Stage {
     this.invalidate();
   }
 
-  /** The properties of the browser's graphics. */
-  get graphics(): Graphics {
-    return graphicsOf(this.renderer);
+  /** Resolves after the first picture with the present meshes. Later meshes are drawn at once. */
+  warm(): Promise<void> {
+    this.invalidate();
+    return new Promise((resolve) => (this.endWarmUp = resolve));
+  }
+
+  /** The work of the last picture: render passes and draw calls. */
+  get work(): Readonly<{ passes: number; calls: number }> {
+    return this.counted;
+  }
+
+  /** The share of the display's rows and columns in moving pictures. */
+  get movingScale(): number {
+    return this.resolution.scale;
+  }
+
+  /** Whether the resolution of moving pictures does not fall any more. */
+  get isAdapted(): boolean {
+    return this.resolution.isFinal;
+  }
+
+  /** Returns to the full resolution, for another scene. */
+  restoreResolution(): void {
+    this.resolution.restart();
+    this.invalidate();
+  }
+
+  /** Width and height of a still picture [px]. */
+  get size(): { width: number; height: number } {
+    const { clientWidth, clientHeight } = this.canvas.parentElement ?? this.canvas;
+    const ratio = fullRatio();
+    return { width: Math.floor(ratio * clientWidth), height: Math.floor(ratio * clientHeight) };
   }
 
   /** Returns to the initial view of the next box of `follow`. */
@@ -92,8 +160,9 @@ export class Stage {
     this.framed = new Box3();
   }
 
-  /** Keeps the whole box in view until the user rotates it. */
+  /** Keeps the whole box in view until the camera is moved. */
   follow(box: Box3): void {
+    this.bounds.copy(box);
     if (!this.framed || box.isEmpty() || box.equals(this.framed)) return;
     this.framed.copy(box);
     this.showFramed();
@@ -129,6 +198,21 @@ export class Stage {
     this.invalidate();
   }
 
+  /** Returns the pose that has the scene in view, from this direction (a unit vector). */
+  poseFrom(direction: Vector3): Pose | undefined {
+    if (this.bounds.isEmpty()) return undefined;
+    const { target, distance } = fitBox(this.bounds, direction, this.camera, this.firstMargin);
+    return { eye: target.clone().addScaledVector(direction, distance), target };
+  }
+
+  /** Ends drawing and releases the graphics context. */
+  dispose(): void {
+    this.renderer.setAnimationLoop(null);
+    this.controls.dispose();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+  }
+
   private showFramed(): void {
     if (!this.framed || this.framed.isEmpty()) return;
     const { target, distance } = fitBox(this.framed, kFirstView, this.camera, this.firstMargin);
@@ -141,6 +225,41 @@ export class Stage {
     this.controls.maxDistance = distance * 5;
     this.controls.update();
     this.invalidate();
+  }
+
+  /**
+   * Draws one picture at another size [px]. `use` must read the canvas immediately, because the
+   * canvas is then drawn anew at its size.
+   * @throws Error if the graphics cannot draw this size.
+   */
+  drawAt({ width, height }: { width: number; height: number }, use: () => void): void {
+    const { renderer, camera, canvas } = this;
+    const ratio = renderer.getPixelRatio();
+    const { fov, aspect } = camera;
+    const scale = height / (canvas.parentElement ?? canvas).clientHeight; // of lines
+    const rest = 0.01 / scale; // so that rounding down gives the size
+    renderer.setDrawingBufferSize(width / scale + rest, height / scale + rest, scale);
+    camera.clearViewOffset();
+    camera.aspect = width / height;
+    // A narrower picture shows the full width.
+    const wider = Math.max(aspect / camera.aspect, 1);
+    camera.fov = MathUtils.RAD2DEG * 2 * Math.atan(wider * Math.tan(MathUtils.DEG2RAD * 0.5 * fov));
+    camera.updateProjectionMatrix();
+    this.fluid.mostRows = height;
+    try {
+      const { drawingBufferWidth, drawingBufferHeight } = renderer.getContext();
+      if (drawingBufferWidth !== width || drawingBufferHeight !== height) {
+        throw new Error(`the graphics cannot draw ${width} × ${height} pixels`);
+      }
+      this.drawNow();
+      use();
+    } finally {
+      this.fluid.mostRows = kMostRows;
+      camera.fov = fov;
+      renderer.setPixelRatio(ratio);
+      this.resize();
+      this.drawNow();
+    }
   }
 
   private resize(): void {
@@ -164,17 +283,50 @@ export class Stage {
   }
 
   private draw(): void {
+    const at = performance.now();
     this.beforeDraw();
     this.controls.update();
-    const drewLast = this.drewLast;
-    this.drewLast = this.stale;
-    if (!this.stale) return;
+    const { drewLast, stale } = this;
+    this.drewLast = stale;
+    if (this.resolution.add(at, stale && drewLast, !stale && !drewLast)) this.onResolution();
+    // A picture that does not change is drawn once more in full resolution.
+    const isLast = !stale && this.scale < 1 && at - this.drawnAt > kStillMs;
+    if (!stale && !isLast) return;
+    if (this.warmUp?.advance(this.camera, (mesh) => this.targetOf(mesh)) === false) return;
+    if (isLast) this.setScale(1);
+    else if (drewLast) this.setScale(this.resolution.scale);
     this.stale = false;
-    this.onDrawn(performance.now(), drewLast);
+    this.drawnAt = at;
+    if (stale) this.onDrawn(at, drewLast);
     this.drawNow();
+    if (!this.endWarmUp) return;
+    this.warmUp = undefined;
+    this.endWarmUp();
+    this.endWarmUp = undefined;
+  }
+
+  /** Returns the target that a mesh is drawn to; null: the canvas. */
+  private targetOf({ layers }: Object3D): WebGLRenderTarget | null {
+    if (layers.isEnabled(kLayers.splats)) return this.splats.target;
+    return this.fluidLook && this.style === 'fluid' ? this.fluid.targetOf(layers) : null;
+  }
+
+  private setScale(scale: number): void {
+    if (scale === this.scale) return;
+    this.scale = scale;
+    this.renderer.setPixelRatio(scale * fullRatio());
   }
 
   private drawNow(): void {
+    const { info } = this.renderer;
+    const { frame } = info.render;
+    info.reset();
+    this.prepare();
+    this.drawPasses();
+    this.counted = { passes: info.render.frame - frame, calls: info.render.calls };
+  }
+
+  private drawPasses(): void {
     const { renderer, scene, camera, fluidLook: look } = this;
     this.sunShadow?.draw(renderer, scene);
     if (look && this.style === 'fluid') {
@@ -186,4 +338,9 @@ export class Stage {
     renderer.render(scene, camera);
     camera.layers.set(kLayers.scene);
   }
+}
+
+/** Pixels per unit of the style sheet; more than two are not visible. */
+function fullRatio(): number {
+  return Math.min(window.devicePixelRatio, 2);
 }

@@ -11,6 +11,7 @@ import { sharedUniforms } from './bodies/shared_uniforms';
 import type { SunShadow } from './shadow/sun_shadow';
 import { Stage } from './stage';
 import { readTheme, watchTheme } from './base/theme';
+import type { Theme } from './base/theme';
 import { World } from './world';
 
 /** The source of frames, which receives the requested attributes. */
@@ -27,7 +28,6 @@ export interface Motion {
 
 /** The drawn world with the user's settings. */
 export class View {
-  readonly settings = new SettingsStore(localStorage, linkedSettings(location.href));
   readonly stage: Stage;
   readonly world: World;
   readonly scale: ColourScale;
@@ -39,17 +39,23 @@ export class View {
   private style: LiquidStyle = 'splats';
   private phase = 1;
   private surfaces = 0;
+  private described: SessionDescription | undefined;
+  /** The reason for a style that was not chosen. */
+  private styleWords: string | undefined;
 
-  /** `beforeDraw` is called once per animation frame. */
+  /** `beforeDraw` is called once per animation frame. By default, the page has the settings. */
   constructor(
     canvas: HTMLCanvasElement,
     private readonly source: FrameSource,
     private readonly motion: Motion,
     beforeDraw: () => void,
+    readonly settings = new SettingsStore(localStorage, linkedSettings(location.href)),
   ) {
     this.stage = new Stage(canvas, this.shared, beforeDraw);
     this.stage.onDrawn = (at, follows) => this.watchPace(at, follows);
-    this.world = new World(readTheme(), this.shared);
+    this.stage.onResolution = () => this.tell();
+    this.stage.prepare = () => this.world.prepare();
+    this.world = new World(this.readTheme(), this.shared);
     this.scale = new ColourScale(this.shared.look);
     this.world.onChange = () => this.showSurface();
     this.world.onValues = (range) => this.scale.add(range);
@@ -62,21 +68,26 @@ export class View {
 
   /** Loads the part that draws solids by their shapes. */
   private async loadSolids(): Promise<void> {
-    const { solidOf, SunShadow, floorShadow } = await import('./solids/solid_drawing');
+    const { solidOf, JoinedSolids, SunShadow, floorShadow } =
+      await import('./solids/solid_drawing');
     const { floor, look, sun } = this.shared;
     this.stage.sunShadow = this.sunShadow = new SunShadow(
       sun,
-      look.phase,
+      look,
       this.stage.graphics.isSoftware,
     );
     this.sunShadow.fit(this.world.extent);
     this.world.group.add(floorShadow(floor, sun));
-    this.world.solidMaker = solidOf;
+    this.world.drawSolids(solidOf, new JoinedSolids(this.shared));
+    await this.stage.warm();
     this.stage.canvas.dataset.solids = 'shapes';
-    this.stage.invalidate();
   }
 
   describe(description: SessionDescription): void {
+    const { session, scene } = description;
+    const isNew = session !== this.described?.session || scene !== this.described.scene;
+    if (isNew) this.stage.restoreResolution();
+    this.described = description;
     this.world.describe(description);
     this.scale.forget();
     this.pace.restart();
@@ -115,10 +126,19 @@ export class View {
 
   /** Applies the colours of the theme. */
   paint(): void {
-    const look = readTheme();
+    const look = this.readTheme();
     this.world.paint(look);
     this.stage.paint(look);
     this.sunShadow?.invalidate(); // the map is lost with the graphics context
+  }
+
+  /** Ends drawing and releases the graphics memory. */
+  dispose(): void {
+    this.stage.dispose();
+  }
+
+  private readTheme(): Theme {
+    return readTheme(this.stage.canvas.parentElement ?? document.body);
   }
 
   private apply(): void {
@@ -141,7 +161,20 @@ export class View {
     this.askFor(settings);
     this.clip(settings);
     this.stage.canvas.dataset.liquid = style;
-    const all = [...(words ? [words] : []), ...this.world.marks.words];
+    this.styleWords = words;
+    this.tell();
+  }
+
+  private tell(): void {
+    const percent = Math.round(100 * this.stage.movingScale);
+    const parts = [
+      this.styleWords,
+      percent < 100
+        ? `In motion, the picture has ${percent} % of the resolution, to keep up with the display.`
+        : undefined,
+      ...this.world.marks.words,
+    ];
+    const all = parts.filter((words) => words !== undefined);
     for (const tell of this.listeners) tell(all);
   }
 
@@ -167,6 +200,7 @@ export class View {
   /** Selects the simpler liquid style on slow graphics, unless the user has chosen a style. */
   private watchPace(at: number, follows: boolean): void {
     if (this.isSlow || this.style !== 'fluid' || !this.world.fluid) return;
+    if (!this.stage.isAdapted) return; // a lower resolution comes first
     this.pace.add(at, follows);
     if (!this.pace.isSlow) return;
     this.isSlow = true;

@@ -24,6 +24,9 @@ import { Marks } from './marks/marks';
 import type { LiquidStyle } from './base/liquid_style';
 import type { Choice } from './base/settings';
 import type { SharedUniforms } from './bodies/shared_uniforms';
+import { BodyTable } from './particles/body_table';
+import { JoinedParticles } from './particles/joined_particles';
+import type { JoinedSolids } from './solids/joined_solids';
 import type { SolidMaker } from './solids/solid_of';
 import { Workshop } from './surface/workshop';
 import { VatView } from './vat_view';
@@ -60,6 +63,10 @@ export class World {
   private colouring: Choice<'colour'> = 'material';
   private readonly workshop = new Workshop();
   private makeSolid: SolidMaker | undefined;
+  /** Rigid bodies that are drawn together. */
+  private readonly table: BodyTable;
+  private readonly particles: JoinedParticles;
+  private joined: JoinedSolids | undefined;
   /** Called after changes between frames. */
   onChange: () => void = () => undefined;
   /** Time of the last frame [s]. */
@@ -72,14 +79,33 @@ export class World {
     private readonly shared: SharedUniforms,
   ) {
     this.ground = new Ground(look);
-    this.group.add(this.ground.mesh, this.marks.group);
+    this.table = new BodyTable(shared.look);
+    this.particles = new JoinedParticles(shared);
+    this.group.add(this.ground.mesh, this.marks.group, this.particles.group);
     this.paint(look);
   }
 
-  /** Draws solids by their shapes from now on. */
-  set solidMaker(make: SolidMaker) {
+  /** Draws solids by their shapes from now on, opaque rigid ones together. */
+  drawSolids(make: SolidMaker, joined: JoinedSolids): void {
     this.makeSolid = make;
+    this.joined = joined;
+    this.group.add(joined.group);
     for (const view of this.bodies.values()) view.addSolid(make);
+  }
+
+  /** Called before each picture. */
+  prepare(): void {
+    const rigid = [...this.bodies.values()].filter(({ isShownRigid }) => isShownRigid);
+    this.table.reserve(rigid.length);
+    rigid.forEach((view, row) => {
+      const sizes = { length: view.bodyLength, radius: view.description.radius };
+      this.table.write(row, view.group.matrix, view.uniforms, sizes);
+    });
+    this.table.finish();
+    this.particles.update(rigid.map((view, row) => ({ row, ...view.particles })));
+    this.joined?.update(
+      rigid.flatMap(({ joinable: solid }, row) => (solid ? [{ row, solid }] : [])),
+    );
   }
 
   /** Shows a description. Bodies of the same scene remain visible until the next frame. */
@@ -201,18 +227,29 @@ export class World {
   /** Returns whether no particle, except those of one body, touches a footprint. */
   isFree(middle: Vector3, footprint: Footprint, except?: number): boolean {
     return [...this.bodies].every(
-      ([body, view]) => body === except || view.isFree(middle, footprint),
+      ([body, view]) => body === except || view.places.isFree(middle, footprint),
     );
   }
 
   /** Returns the space of a body, relative to its centre. */
   footprintOf(body: number): Footprint | undefined {
-    return this.bodies.get(body)?.footprint();
+    return this.bodies.get(body)?.places.footprint();
   }
 
   /** Returns the particle closest to a body's centre. */
   middleOf(body: number): { particle: number; position: Vector3 } | undefined {
-    return this.bodies.get(body)?.middle();
+    return this.bodies.get(body)?.places.middle();
+  }
+
+  /** Returns a body's properties with its present number of particles. */
+  describedBody(body: number): BodyDescription | undefined {
+    const view = this.bodies.get(body);
+    return view && { ...view.description, particles: view.count };
+  }
+
+  /** Returns the centre of a body, at the present phase. */
+  centreOf(body: number): Vector3 | undefined {
+    return this.bodies.get(body)?.places.centre();
   }
 
   paint(look: Theme): void {
@@ -297,7 +334,7 @@ export class World {
 
   /** Sets the camera's box and the ground from the bodies if there is no vat. */
   private settle(): void {
-    for (const view of this.bodies.values()) view.expand(this.seen);
+    for (const view of this.bodies.values()) view.places.expand(this.seen);
     if (!this.seen.isEmpty()) this.ground.fit(this.seen);
   }
 

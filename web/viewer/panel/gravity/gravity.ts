@@ -10,7 +10,14 @@ export interface Tilt {
   y: number;
 }
 
-const kMostTilt = 60;
+/** An angle along a horizontal unit vector. */
+export interface LeanPart {
+  degrees: number;
+  along: readonly [number, number];
+}
+
+/** The maximum angle on each axis [degrees]. */
+export const kMostTilt = 60;
 const kRadians = Math.PI / 180;
 
 /** Returns gravity of this strength along (tan x, tan y, -1). */
@@ -75,13 +82,18 @@ export class Gravity {
     this.show();
   }
 
-  /** Tilts gravity along horizontal unit vectors. */
-  lean(parts: readonly { degrees: number; along: readonly [number, number] }[]): void {
+  /** The present gravity, including a change that the server has not answered yet. */
+  get present(): Readonly<Tilt> {
+    return this.tilt;
+  }
+
+  /** Tilts gravity along horizontal unit vectors, relative to `from`; by default, to vertical. */
+  lean(parts: readonly LeanPart[], from: Pick<Tilt, 'x' | 'y'> = { x: 0, y: 0 }): void {
     const sum = (axis: 0 | 1): number =>
       parts.reduce((total, { degrees, along }) => total + degrees * along[axis], 0);
     const within = (value: number): number =>
       Math.round(Math.min(Math.max(value, -kMostTilt), kMostTilt));
-    this.change({ ...this.tilt, x: within(sum(0)), y: within(sum(1)) });
+    this.change({ ...this.tilt, x: within(from.x + sum(0)), y: within(from.y + sum(1)) });
   }
 
   private readSliders(): void {
@@ -93,7 +105,8 @@ export class Gravity {
     });
   }
 
-  private change(tilt: Tilt): void {
+  /** Shows and sends a gravity. */
+  change(tilt: Readonly<Tilt>): void {
     this.tilt = tilt;
     this.show();
     this.newest.put(gravityOf(tilt));

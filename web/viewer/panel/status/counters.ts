@@ -18,6 +18,13 @@ function write(target: HTMLElement, value: number, text: string): void {
   target.textContent = text;
 }
 
+/** Render passes and draw calls of a picture, and its share of the display's resolution. */
+export interface Drawing {
+  passes: number;
+  calls: number;
+  scale: number;
+}
+
 /** The figures at the end of the panel. */
 export class Counters {
   private readonly tick = field('tick');
@@ -29,11 +36,16 @@ export class Counters {
   private readonly frameAge = field('frame-age');
   private readonly dropped = field('dropped');
   private readonly quality = field('quality');
+  private readonly work = field('drawing');
   private readonly meter = new FrameMeter();
   private age: number | undefined;
   private lastBytes = 0;
 
-  constructor(private readonly now: () => number) {
+  /** `drawing` returns the work of the last picture, and the resolution of moving pictures. */
+  constructor(
+    private readonly now: () => number,
+    private readonly drawing: () => Drawing,
+  ) {
     window.setInterval(() => this.writeRates(), kReadableMs);
   }
 
@@ -88,7 +100,16 @@ export class Counters {
     const bytesPerSecond = this.meter.bytesPerSecond(this.now());
     write(this.frameBytes, this.lastBytes, formatBytes(this.lastBytes));
     write(this.byteRate, bytesPerSecond, `${formatBytes(bytesPerSecond)}/s`);
+    this.writeDrawing();
     if (this.age === undefined) this.frameAge.textContent = '–';
     else write(this.frameAge, this.age, formatMilliseconds(this.age));
+  }
+
+  private writeDrawing(): void {
+    const { passes, calls, scale } = this.drawing();
+    Object.assign(this.work.dataset, { passes, calls, scale });
+    const share = scale < 1 ? `, ${Math.round(100 * scale)} % resolution` : '';
+    const text = `${passes} passes, ${calls} draw calls${share}`;
+    if (this.work.textContent !== text) this.work.textContent = text;
   }
 }

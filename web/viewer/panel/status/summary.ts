@@ -34,7 +34,7 @@ export function summarise(state: State): string {
   parts.push(state.scene);
   if (state.people > 1) parts.push(`${state.people} people here`);
   if (state.held !== undefined)
-    parts.push(`you hold ${state.held}: arrow keys pull it, Esc releases it`);
+    parts.push(`you hold ${state.held}: arrow keys pull or aim, Enter releases it`);
   if (state.role === 'viewer') parts.push('you watch: ask for control under People');
   const text = `${parts.join(' · ')}.`;
   if (state.playing && state.silentSeconds > kSilent) {

@@ -17,6 +17,8 @@ export const kChoices = {
   clip: ['off', 'x', 'y', 'z'],
   /** Interpolation between frames; `auto`: unless the CPU draws. */
   smooth: ['auto', 'on', 'off'],
+  /** The slow orbit of the camera while nobody operates the page. */
+  orbit: ['on', 'off'],
 } as const;
 
 /** Switches, off by default. */

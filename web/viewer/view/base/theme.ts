@@ -28,10 +28,10 @@ const kProperties: Readonly<Record<keyof Theme, string>> = {
   skyHigh: '--view-sky-high',
 };
 
-/** Returns the theme of the page's style, light or dark. */
-export function readTheme(): Theme {
+/** Returns the theme of an element's style, light or dark. */
+export function readTheme(element: Element): Theme {
   const probe = document.createElement('i');
-  document.body.append(probe);
+  element.append(probe);
   const read = (property: string): Color => {
     probe.style.color = `var(${property})`;
     return new Color(getComputedStyle(probe).color);

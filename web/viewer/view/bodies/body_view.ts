@@ -1,5 +1,5 @@
-import { Group, Matrix4, Mesh, Vector3 } from 'three';
-import type { Box3, Ray, ShaderMaterial } from 'three';
+import { Group, Matrix4, Mesh } from 'three';
+import type { Ray, ShaderMaterial, Vector3 } from 'three';
 import { BodyKind } from '../../../client/index';
 import type { BodyDescription, FrameHeader, GridBlock, PoseBlock } from '../../../client/index';
 import type { Look } from '../base/appearance';
@@ -11,8 +11,6 @@ import type { Range } from '../colour/range';
 import { fluidDepthMaterial, fluidThicknessMaterial } from '../fluid/fluid_particles';
 import { bodyUniforms, kColourSource } from '../particles/impostor';
 import type { BodyUniforms } from '../particles/impostor';
-import { cloudOf } from '../base/footprint';
-import type { Footprint } from '../base/footprint';
 import { kLayers } from '../base/layers';
 import type { LiquidStyle } from '../base/liquid_style';
 import { bodyColour } from '../base/palette';
@@ -22,6 +20,8 @@ import type { Choice } from '../base/settings';
 import { shadowMaterial } from '../particles/shadow_material';
 import type { SolidSurface } from '../solids/solid';
 import type { SolidMaker } from '../solids/solid_of';
+import { BodyPlaces } from './body_places';
+import type { RigidParticles } from '../particles/joined_particles';
 import type { SharedUniforms } from './shared_uniforms';
 import { sphereMaterial } from '../particles/sphere_material';
 import { Skin } from '../surface/skin';
@@ -50,6 +50,7 @@ export class BodyView {
   readonly group = new Group();
   readonly columns: ParticleColumns;
   readonly uniforms: BodyUniforms;
+  readonly places: BodyPlaces;
   /** The motion of a rigid body; undefined for others. */
   readonly motion: RigidMotion | undefined;
   private readonly materials: ShaderMaterial[] = [];
@@ -86,6 +87,7 @@ export class BodyView {
     this.columns = new ParticleColumns(local ? local.length / 3 : particles, local);
     this.motion = kind === 'rigid' ? new RigidMotion() : undefined;
     this.uniforms = bodyUniforms(bodyColour(kind, nthOfKind), shared.look, !this.motion);
+    this.places = new BodyPlaces(this.columns, this.group, this.uniforms, radius);
     this.group.matrixAutoUpdate = false;
     this.group.visible = false; // until the first frame
     this.spots = this.add(shadowMaterial(radius, shared.floor, this.uniforms), kOrder.shadow);
@@ -221,52 +223,29 @@ export class BodyView {
   /** Returns the world position of a particle number; undefined if it is not shown. */
   positionOf(particle: number): Vector3 | undefined {
     const place = this.columns.placeOf(particle);
-    return place === undefined ? undefined : this.positionAt(place);
+    return place === undefined ? undefined : this.places.at(place);
   }
 
-  private positionAt(place: number): Vector3 {
-    const phase = this.uniforms.phase.value;
-    const at = (q: number): number => this.columns.coordinate(3 * place + q, phase);
-    return new Vector3(at(0), at(1), at(2)).applyMatrix4(this.group.matrix);
+  /** Whether it is a rigid body with a picture. */
+  get isShownRigid(): boolean {
+    return this.motion !== undefined && this.group.visible;
   }
 
-  /** Returns whether no particle touches a footprint centred at `middle`. */
-  isFree(middle: Vector3, footprint: Footprint): boolean {
-    if (!this.group.visible) return true;
-    const { radius } = this.description;
-    const box = footprint.box.clone().expandByScalar(radius);
-    for (let i = 0; i < this.count; ++i) {
-      const place = this.positionAt(i).sub(middle);
-      if (box.containsPoint(place) && footprint.touches(place, radius)) return false;
-    }
-    return true;
+  /** The surface of a rigid body, if it can be drawn together with those of other bodies. */
+  get joinable(): SolidSurface | undefined {
+    const { solid } = this;
+    return solid?.mesh.visible && solid.opacity === 1 ? solid : undefined;
   }
 
-  /** Returns the particles relative to their mean position. */
-  footprint(): Footprint {
-    const places = Array.from({ length: this.count }, (_, i) => this.positionAt(i));
-    const mean = places.reduce((sum, place) => sum.add(place), new Vector3());
-    mean.divideScalar(Math.max(places.length, 1));
-    for (const place of places) place.sub(mean);
-    return cloudOf(places, this.description.radius);
+  /** The particles of a rigid body. */
+  get particles(): Omit<RigidParticles, 'row'> {
+    const { spheres, spots, description } = this;
+    return { spheres, spots, places: description.local_positions ?? [] };
   }
 
-  /** Returns the particle closest to the mean position. */
-  middle(): { particle: number; position: Vector3 } | undefined {
-    if (!this.group.visible || this.count === 0) return undefined;
-    const places = Array.from({ length: this.count }, (_, i) => this.positionAt(i));
-    const mean = places.reduce((sum, place) => sum.add(place), new Vector3());
-    mean.divideScalar(places.length);
-    const away = places.map((place) => place.distanceToSquared(mean));
-    const nearest = away.reduce((best, value, i) => (value < away[best]! ? i : best), 0);
-    return { particle: this.columns.numberAt(nearest), position: places[nearest]! };
-  }
-
-  /** Extends the box to contain all particles. */
-  expand(box: Box3): void {
-    if (!this.group.visible) return;
-    for (let i = 0; i < this.count; ++i) box.expandByPoint(this.positionAt(i));
-    box.expandByScalar(this.description.radius);
+  /** The longest side of the surface, 1 without a surface [m]. */
+  get bodyLength(): number {
+    return this.solid?.bodyLength ?? 1;
   }
 
   dispose(): void {

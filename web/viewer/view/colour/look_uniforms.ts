@@ -13,6 +13,8 @@ export interface LookUniforms extends Record<string, IUniform> {
   phase: IUniform<number>;
   /** Simulated time between these frames [s]; 0: unknown. */
   interval: IUniform<number>;
+  /** The values of rigid bodies that are drawn together; see BodyTable. */
+  body_table: IUniform<DataTexture | null>;
 }
 
 export function lookUniforms(): LookUniforms {
@@ -22,5 +24,6 @@ export function lookUniforms(): LookUniforms {
     value_range: { value: new Vector2(0, 1) },
     phase: { value: 1 },
     interval: { value: 0 },
+    body_table: { value: null },
   };
 }

@@ -5,7 +5,7 @@ import type { BehindUniforms } from './fluid_pass';
 
 const kDepth = /* glsl */ `
     if (inside <= 0.0) discard;
-    vec3 point = (along - radius * sqrt(inside)) * ray;
+    vec3 point = (along - extent * sqrt(inside)) * ray;
     gl_FragDepth = depth_of(point);
     depth = -point.z;
   }
@@ -20,7 +20,7 @@ const kShare = 8 / ((4 / 3) * Math.PI * kSize ** 3);
 /** The length of the ray in the sphere in front of the scene; it weights the colour. */
 const kThickness = /* glsl */ `
     if (inside <= 0.0) discard;
-    float half_way = radius * sqrt(inside);
+    float half_way = extent * sqrt(inside);
     float window_depth = textureLod(behind_depth, gl_FragCoord.xy * texel, 0.0).r;
     float eye_depth = projectionMatrix[3][2] / (2.0 * window_depth - 1.0 + projectionMatrix[2][2]);
     float before = eye_depth / -ray.z;

@@ -9,7 +9,7 @@ import {
   Vector2,
   WebGLRenderTarget,
 } from 'three';
-import type { Color, IUniform, PerspectiveCamera, WebGLRenderer } from 'three';
+import type { Color, IUniform, Layers, PerspectiveCamera, WebGLRenderer } from 'three';
 import { screenMesh } from '../base/screen';
 import { kLayers } from '../base/layers';
 import type { Theme } from '../base/theme';
@@ -17,7 +17,7 @@ import { fluidCompositeMaterial } from './fluid_composite';
 import { smoothingMaterial } from './smoothing';
 
 /** The maximum number of rows of the textures; the surface is smooth, so more do not pay. */
-const kMostRows = 1000;
+export const kMostRows = 1000;
 
 /** Spacing of the samples of each smoothing pass, relative to the particle radius. */
 const kSmoothing = [2, 1.3];
@@ -66,6 +66,8 @@ export class FluidPass {
   private readonly result = screenMesh(this.composite);
   private readonly screen = new Scene();
   private readonly size = new Vector2();
+  /** The maximum number of rows of the textures. Photos have more than moving pictures. */
+  mostRows = kMostRows;
 
   constructor(private readonly uniforms: BehindUniforms) {
     this.screen.add(this.smoother, this.result);
@@ -80,6 +82,13 @@ export class FluidPass {
   paint(look: Theme): void {
     (this.composite.uniforms.sky_low!.value as Color).copy(look.skyLow);
     (this.composite.uniforms.sky_high!.value as Color).copy(look.skyHigh);
+  }
+
+  /** Returns the target that a mesh of these layers is drawn to; null: the canvas. */
+  targetOf(layers: Layers): WebGLRenderTarget | null {
+    if (layers.isEnabled(kLayers.fluidDepth)) return this.depths[0];
+    if (layers.isEnabled(kLayers.fluidThickness)) return this.thickness;
+    return layers.isEnabled(kLayers.marks) ? null : this.behind;
   }
 
   /** Draws the scene with its liquids to the canvas. */
@@ -104,7 +113,7 @@ export class FluidPass {
   private resize(renderer: WebGLRenderer): void {
     const { x, y } = renderer.getDrawingBufferSize(this.size);
     this.behind.setSize(x, y);
-    const scale = Math.min(1, kMostRows / y);
+    const scale = Math.min(1, this.mostRows / y);
     const [width, height] = [Math.ceil(scale * x), Math.ceil(scale * y)];
     for (const target of this.depths) target.setSize(width, height);
     const [thickWidth, thickHeight] = [Math.ceil(width / 2), Math.ceil(height / 2)];

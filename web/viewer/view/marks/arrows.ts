@@ -20,25 +20,25 @@ const kVertexShader = /* glsl */ `
   uniform float radius;
   uniform uint every;
   uniform bool is_rigid;
-  uniform vec3 linear;
-  uniform vec3 angular;
 
   void main() {
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside of the picture
     // A scattered selection, because rows of arrows would hide one another.
     if (((number * 2654435761u) >> 8) % every != 0u || interval <= 0.0) return;
+    Body body = this_body();
     vec3 place = place_of_particle();
-    vec3 world = (modelMatrix * vec4(place, 1.0)).xyz;
+    vec3 world = (body.to_world * vec4(place, 1.0)).xyz;
+    float size_of_particle = radius_of_body(radius);
     if (is_clipped(world)) return;
     vec3 velocity = is_rigid
-      ? linear + cross(angular, mat3(modelMatrix) * place)
-      : mat3(modelMatrix) * (center - before) / interval;
+      ? body.linear + cross(body.angular, mat3(body.to_world) * place)
+      : mat3(body.to_world) * (center - before) / interval;
     vec3 base = (viewMatrix * vec4(world, 1.0)).xyz;
     vec3 way = mat3(viewMatrix) * (seconds * velocity);
     float size = length(way);
-    if (size < 0.25 * radius) return;
+    if (size < 0.25 * size_of_particle) return;
     vec3 across = normalize(cross(way, base));
-    float head = min(0.45 * size, 1.3 * radius);
+    float head = min(0.45 * size, 1.3 * size_of_particle);
     float shaft = size - 0.9 * head;
     float along = position.y < 1.5 ? shaft * position.y : size - head * (3.0 - position.y);
     float width = position.y < 1.5 ? 0.16 : 0.62;

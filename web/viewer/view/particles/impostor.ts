@@ -1,6 +1,7 @@
 import { Color, Vector3 } from 'three';
 import type { IUniform } from 'three';
 import type { LookUniforms } from '../colour/look_uniforms';
+import { kBody } from './body_shader';
 
 /** Sources of the particles' colours. */
 export const kColourSource = {
@@ -44,12 +45,13 @@ export function bodyUniforms(colour: Color, look: LookUniforms, moves: boolean):
   };
 }
 
-/** Position of the instance, in coordinates of the model matrix, and the test of the clip plane. */
+/** Position of the instance in world axes, and the test of the clip plane. */
 export const kPlaceOfParticle = /* glsl */ `
   in vec3 center;
   in vec3 before;
   uniform float phase;
   uniform vec4 clip_plane;
+  ${kBody}
 
   vec3 place_of_particle() {
     return mix(before, center, phase);
@@ -70,44 +72,45 @@ export const kImpostorVertexShader = /* glsl */ `
   in uint number;
   in int value;
   uniform float radius;
-  uniform vec3 colour;
-  uniform int colour_source;
   uniform float value_quantum;
   uniform vec2 value_range;
   uniform sampler2D value_map;
-  uniform vec3 linear;
-  uniform vec3 angular;
   flat out vec3 view_center;
   flat out vec3 base;
+  flat out float extent;
+  flat out float rough;
   out vec3 view_point;
 
-  vec3 colour_at(vec3 arm) {
-    if (colour_source == ${kColourSource.body}) {
+  vec3 colour_at(Body body, vec3 arm) {
+    if (body.colour_source == ${kColourSource.body}) {
       float tint = fract(float(number & 65535u) * 0.618034) - 0.5;
-      return colour * (1.0 + 0.16 * tint);
+      return body.colour * (1.0 + 0.16 * tint);
     }
-    float shown = colour_source == ${kColourSource.column}
+    float shown = body.colour_source == ${kColourSource.column}
       ? float(value) * value_quantum
-      : length(linear + cross(angular, arm));
+      : length(body.linear + cross(body.angular, arm));
     float at = (shown - value_range.x) / (value_range.y - value_range.x);
     return textureLod(value_map, vec2(clamp(at, 0.002, 0.998), 0.5), 0.0).rgb;
   }
 
   void main() {
+    Body body = this_body();
     vec3 place = place_of_particle();
-    vec3 world = (modelMatrix * vec4(place, 1.0)).xyz;
+    vec3 world = (body.to_world * vec4(place, 1.0)).xyz;
     if (is_clipped(world)) {
       gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside of the picture
       return;
     }
-    view_center = (modelViewMatrix * vec4(place, 1.0)).xyz;
+    extent = radius_of_body(radius);
+    rough = body.matter.x;
+    view_center = (viewMatrix * vec4(world, 1.0)).xyz;
     float distance2 = dot(view_center, view_center);
     vec3 toward = -view_center * inversesqrt(distance2);
     vec3 right = normalize(cross(vec3(0.0, 1.0, 0.0), toward));
     vec3 up = cross(toward, right);
-    float outline = radius * sqrt(distance2 / max(distance2 - radius * radius, 0.01 * distance2));
+    float outline = extent * sqrt(distance2 / max(distance2 - extent * extent, 0.01 * distance2));
     view_point = view_center + outline * (position.x * right + position.y * up);
-    base = colour_at(mat3(modelMatrix) * place);
+    base = colour_at(body, mat3(body.to_world) * place);
     gl_Position = projectionMatrix * vec4(view_point, 1.0);
   }
 `;
@@ -117,7 +120,8 @@ export const kImpostorHit = /* glsl */ `
   flat in vec3 view_center;
   flat in vec3 base;
   in vec3 view_point;
-  uniform float radius;
+  flat in float extent;
+  flat in float rough;
   uniform mat4 projectionMatrix;
 
   float depth_of(vec3 point) {
@@ -129,5 +133,5 @@ export const kImpostorHit = /* glsl */ `
     vec3 ray = normalize(view_point);
     float along = dot(ray, view_center);
     vec3 miss = view_center - along * ray;
-    float inside = 1.0 - dot(miss, miss) / (radius * radius);
+    float inside = 1.0 - dot(miss, miss) / (extent * extent);
 `;

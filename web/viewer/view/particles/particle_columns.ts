@@ -3,7 +3,9 @@ import type { FrameHeader, GridBlock } from '../../../client/index';
 
 const kGrowth = 1.5;
 
-const kSquare = [-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0];
+/** Corners and triangles of the square of a particle. */
+export const kSquare = [-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0];
+export const kSquareTriangles = [0, 1, 2, 0, 2, 3];
 
 /** The grid of a frame. */
 type Grid = Pick<FrameHeader, 'origin' | 'quantum'>;
@@ -32,7 +34,7 @@ export class ParticleColumns {
     }
     this.numberColumn = plainNumbers(particles);
     this.valueColumn = new InstancedBufferAttribute(new Int32Array(particles), 1);
-    this.geometry = this.shapedAs(kSquare, [0, 1, 2, 0, 2, 3]);
+    this.geometry = this.shapedAs(kSquare, kSquareTriangles);
     this.count = particles;
   }
 

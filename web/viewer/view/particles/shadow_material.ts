@@ -33,10 +33,10 @@ const kVertexShader = /* glsl */ `
   out vec2 at;
 
   void main() {
-    vec3 world = (modelMatrix * vec4(place_of_particle(), 1.0)).xyz;
+    vec3 world = (this_body().to_world * vec4(place_of_particle(), 1.0)).xyz;
     strength = clamp(1.0 - (world.z - floor_z) / reach, 0.0, 1.0);
     spot = position.xy;
-    at = world.xy + 2.2 * radius * position.xy;
+    at = world.xy + 2.2 * radius_of_body(radius) * position.xy;
     gl_Position = is_clipped(world)
       ? vec4(2.0, 2.0, 2.0, 1.0) // outside of the picture
       : projectionMatrix * viewMatrix * vec4(at, floor_z, 1.0);

@@ -7,7 +7,7 @@ const kLayer = 0.6;
 
 const kDepth = /* glsl */ `
     if (inside <= 0.65) discard; // the faint rim must not hide objects behind
-    vec3 point = (along - radius * (0.6 * sqrt(inside) - ${kLayer})) * ray;
+    vec3 point = (along - extent * (0.6 * sqrt(inside) - ${kLayer})) * ray;
     gl_FragDepth = depth_of(point);
     shape = tints = vec4(0.0);
   }
@@ -16,9 +16,9 @@ const kDepth = /* glsl */ `
 /** Each splat is a lens. Normals, depths and colours of overlapping lenses are blended. */
 const kSplat = /* glsl */ `
     if (inside <= 0.0) discard;
-    vec3 point = (along - 0.6 * radius * sqrt(inside)) * ray;
+    vec3 point = (along - 0.6 * extent * sqrt(inside)) * ray;
     gl_FragDepth = depth_of(point);
-    vec3 bulge = -miss / radius;
+    vec3 bulge = -miss / extent;
     float weight = inside * inside * inside;
     shape = weight * vec4(0.9 * bulge.xy, point.z, 1.0);
     tints = weight * vec4(base, 1.0);

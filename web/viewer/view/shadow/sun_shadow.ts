@@ -11,7 +11,9 @@ import {
   Vector3,
   WebGLRenderTarget,
 } from 'three';
-import type { IUniform, Scene, WebGLRenderer } from 'three';
+import type { Scene, WebGLRenderer } from 'three';
+import { kBody } from '../particles/body_shader';
+import type { LookUniforms } from '../colour/look_uniforms';
 import { kLayers } from '../base/layers';
 import { kSunWay } from '../base/light';
 import type { SunUniforms } from '../base/sun_uniforms';
@@ -30,8 +32,10 @@ const kAbove = 0.5;
 const kVertexShader = /* glsl */ `
   in vec3 before;
   uniform float phase;
+  ${kBody}
   void main() {
-    gl_Position = projectionMatrix * modelViewMatrix * vec4(mix(before, position, phase), 1.0);
+    vec4 world = this_body().to_world * vec4(mix(before, position, phase), 1.0);
+    gl_Position = projectionMatrix * viewMatrix * world;
   }
 `;
 
@@ -46,10 +50,9 @@ export class SunShadow {
   private readonly material: ShaderMaterial;
   private readonly fitted = new Box3();
 
-  /** `phase` is that of the interpolation between frames. */
   constructor(
     private readonly uniforms: SunUniforms,
-    phase: IUniform<number>,
+    { phase, body_table }: Pick<LookUniforms, 'phase' | 'body_table'>,
     isSoftware: boolean,
   ) {
     const { size, samples } = isSoftware ? kCoarse : kFine;
@@ -64,7 +67,7 @@ export class SunShadow {
     this.material = new ShaderMaterial({
       vertexShader: kVertexShader,
       fragmentShader: 'void main() { gl_FragColor = vec4(1.0); }',
-      uniforms: { phase },
+      uniforms: { phase, body_table },
     });
   }
 

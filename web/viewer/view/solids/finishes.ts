@@ -37,7 +37,7 @@ const kNoise = /* glsl */ `
 /**
  * The surface of a finish at a point of the body: colour factors, roughness, and a height in body
  * lengths whose slope tilts the normal. `grain` has the longest axis of the body first, and is 1
- * unit long. `FINISH` is the number of the finish.
+ * unit long. `FINISH` is the number of the finish, and `matter` is that of Body.
  */
 export const kFinishShader = /* glsl */ `
   ${kNoise}
@@ -49,8 +49,8 @@ export const kFinishShader = /* glsl */ `
 
   Surface finish_wood(vec3 grain, Surface plain) {
     // Rings around an axis beside the body, wavy along the grain.
-    vec2 heart = vec2(0.35, -0.22) + 0.3 * vec2(variant - 0.5, fract(7.0 * variant) - 0.5);
-    float pale = noise(vec3(2.2 * grain.x, 3.0 * grain.yz) + 9.0 * variant);
+    vec2 heart = vec2(0.35, -0.22) + 0.3 * vec2(matter.z - 0.5, fract(7.0 * matter.z) - 0.5);
+    float pale = noise(vec3(2.2 * grain.x, 3.0 * grain.yz) + 9.0 * matter.z);
     float wave = 0.05 * pale;
     float ring = fract(9.0 * (length(grain.yz - heart) + wave));
     float late = smoothstep(0.2, 0.8, ring) * (1.0 - smoothstep(0.8, 1.0, ring));
@@ -63,7 +63,7 @@ export const kFinishShader = /* glsl */ `
   }
 
   Surface finish_brick(vec3 grain, Surface plain) {
-    float stain = rough_noise(5.0 * grain + 13.0 * variant);
+    float stain = rough_noise(5.0 * grain + 13.0 * matter.z);
     float grit = noise(70.0 * grain);
     float pit = smoothstep(0.68, 0.8, noise(26.0 * grain + 5.0));
     plain.colour *= mix(vec3(0.72, 0.66, 0.64), vec3(1.2, 1.16, 1.1), stain);
@@ -83,7 +83,7 @@ export const kFinishShader = /* glsl */ `
   Surface finish_steel(vec3 grain, Surface plain) {
     float stroke = noise(vec3(3.0 * grain.x, 160.0 * grain.yz));
     float fine = noise(vec3(9.0 * grain.x, 420.0 * grain.yz));
-    float cloud = rough_noise(3.0 * grain + 4.0 * variant);
+    float cloud = rough_noise(3.0 * grain + 4.0 * matter.z);
     plain.colour *= 0.9 + 0.12 * stroke + 0.08 * cloud;
     plain.roughness += 0.16 * (stroke - 0.5) + 0.1 * (cloud - 0.5);
     plain.height = 0.0005 * stroke + 0.0003 * fine;
@@ -91,7 +91,7 @@ export const kFinishShader = /* glsl */ `
   }
 
   Surface finish_clay(vec3 grain, Surface plain) {
-    float lump = rough_noise(7.0 * grain + 3.0 * variant);
+    float lump = rough_noise(7.0 * grain + 3.0 * matter.z);
     float grit = noise(60.0 * grain);
     plain.colour *= mix(0.82, 1.14, lump) * (0.93 + 0.14 * grit);
     plain.height = 0.012 * lump + 0.002 * grit;
@@ -99,7 +99,7 @@ export const kFinishShader = /* glsl */ `
   }
 
   Surface surface_at(vec3 grain, vec3 base) {
-    Surface plain = Surface(base, roughness, 0.0);
+    Surface plain = Surface(base, matter.x, 0.0);
   #if FINISH == ${number('wood')}
     return finish_wood(grain, plain);
   #elif FINISH == ${number('brick')}

@@ -1,9 +1,9 @@
-import { BufferAttribute, DoubleSide, FrontSide, Mesh, Vector3 } from 'three';
+import { BufferAttribute, DoubleSide, FrontSide, Matrix4, Mesh, Vector3 } from 'three';
 import type { Box3, BufferGeometry, ShaderMaterial } from 'three';
 import { kLayers } from '../base/layers';
 import type { BodyUniforms } from '../particles/impostor';
 import type { ParticleColumns } from '../particles/particle_columns';
-import { solidMaterial } from './solid_material';
+import { grainOf, solidMaterial } from './solid_material';
 import type { Surroundings } from './solid_material';
 
 /** The particles of a frame, for a surface that follows them. */
@@ -26,6 +26,8 @@ export interface SolidSurface {
   opacity: number;
   /** The index in kFinishes. */
   finish: number;
+  /** The longest side [m]. */
+  readonly bodyLength: number;
   /** Follows the particles of a frame. */
   follow?(particles: ShownParticles): void;
   /** Ends the interpolation: the next frame does not continue the motion. */
@@ -33,9 +35,17 @@ export interface SolidSurface {
   dispose(): void;
 }
 
+/** The surface of a rigid body that can be drawn together with those of others. */
+export interface Joinable {
+  /** The row in the table of bodies, from 0 on. */
+  row: number;
+  solid: SolidSurface;
+}
+
 /** A surface of constant form. That of a rigid body moves with the body's group. */
 export class Solid implements SolidSurface {
   readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;
+  readonly bodyLength: number;
 
   /** `box` is the extent of the surface at rest. See withRest() for the geometry. */
   constructor(
@@ -44,7 +54,8 @@ export class Solid implements SolidSurface {
     uniforms: BodyUniforms,
     surroundings: Surroundings,
   ) {
-    this.mesh = new Mesh(geometry, solidMaterial(uniforms, surroundings, box));
+    this.bodyLength = grainOf(box).length;
+    this.mesh = new Mesh(geometry, solidMaterial(uniforms, surroundings, this.bodyLength));
     this.mesh.frustumCulled = false;
     this.mesh.visible = false;
     this.mesh.layers.enable(kLayers.casters);
@@ -66,10 +77,7 @@ export class Solid implements SolidSurface {
   }
 
   set finish(finish: number) {
-    const { material } = this.mesh;
-    if (finish === this.finish) return;
-    material.defines.FINISH = finish;
-    material.needsUpdate = true;
+    setFinish(this.mesh.material, finish);
   }
 
   dispose(): void {
@@ -78,11 +86,23 @@ export class Solid implements SolidSurface {
   }
 }
 
-/** Adds the attributes of solidMaterial() to a geometry with positions and normals. */
+/** Sets the index in kFinishes of a material of solidMaterial(). */
+export function setFinish(material: ShaderMaterial, finish: number): void {
+  if (finish === material.defines.FINISH) return;
+  material.defines.FINISH = finish;
+  material.needsUpdate = true;
+}
+
+/**
+ * Adds the attributes of solidMaterial() to a geometry with positions and normals. The positions at
+ * rest are relative to the centre, in the axes of the grain and in lengths of the longest side.
+ */
 export function withRest(geometry: BufferGeometry, box: Box3): BufferGeometry {
   const positions = geometry.getAttribute('position');
   const middle = box.getCenter(new Vector3());
+  const toGrain = new Matrix4().setFromMatrix3(grainOf(box).toGrain);
   const rest = geometry.clone().translate(-middle.x, -middle.y, -middle.z);
+  rest.getAttribute('position').applyMatrix4(toGrain);
   geometry.setAttribute('rest', rest.getAttribute('position'));
   geometry.setAttribute('before', positions);
   geometry.setAttribute('amount', new BufferAttribute(new Float32Array(positions.count), 1));

@@ -1,5 +1,6 @@
 import { DoubleSide, Matrix3, ShaderMaterial } from 'three';
 import type { Box3 } from 'three';
+import { kBody } from '../particles/body_shader';
 import { kEnvironment } from '../base/environment';
 import { kSunlight } from '../base/sun_uniforms';
 import type { SunUniforms } from '../base/sun_uniforms';
@@ -13,29 +14,30 @@ const kVertexShader = /* glsl */ `
   in vec3 before;
   in float amount;
   uniform float phase;
-  uniform mat3 to_grain;
-  uniform vec3 colour;
-  uniform int colour_source;
   uniform vec2 value_range;
   uniform sampler2D value_map;
-  uniform vec3 linear;
-  uniform vec3 angular;
+  ${kBody}
   out vec3 world_point;
   out vec3 outward;
   out vec3 grain;
   out vec3 base;
+  flat out vec4 matter;
+  flat out int source;
 
   void main() {
+    Body body = this_body();
     vec3 place = mix(before, position, phase);
-    world_point = (modelMatrix * vec4(place, 1.0)).xyz;
-    outward = mat3(modelMatrix) * normal;
-    grain = to_grain * rest;
-    base = colour;
-    if (colour_source != ${kColourSource.body}) {
-      vec3 arm = mat3(modelMatrix) * place;
-      float shown = colour_source == ${kColourSource.column}
+    world_point = (body.to_world * vec4(place, 1.0)).xyz;
+    outward = mat3(body.to_world) * normal;
+    grain = rest;
+    base = body.colour;
+    matter = body.matter;
+    source = body.colour_source;
+    if (source != ${kColourSource.body}) {
+      vec3 arm = mat3(body.to_world) * place;
+      float shown = source == ${kColourSource.column}
         ? amount
-        : length(linear + cross(angular, arm));
+        : length(body.linear + cross(body.angular, arm));
       float at = (shown - value_range.x) / (value_range.y - value_range.x);
       base = textureLod(value_map, vec2(clamp(at, 0.002, 0.998), 0.5), 0.0).rgb;
     }
@@ -48,13 +50,10 @@ const kFragmentShader = /* glsl */ `
   in vec3 outward;
   in vec3 grain;
   in vec3 base;
+  flat in vec4 matter;
+  flat in int source;
   uniform vec4 clip_plane;
-  uniform int colour_source;
-  uniform float roughness;
-  uniform float metalness;
   uniform float opacity;
-  uniform float variant;
-  uniform float body_length;
   uniform float floor_z;
   ${kFinishShader}
   ${kEnvironment}
@@ -63,9 +62,11 @@ const kFragmentShader = /* glsl */ `
   void main() {
     if (dot(clip_plane.xyz, world_point) > clip_plane.w) discard;
     float facing = gl_FrontFacing ? 1.0 : -1.0;
-    Surface here = Surface(base, roughness, 0.0);
+    float metalness = matter.y;
+    float body_length = matter.w;
+    Surface here = Surface(base, matter.x, 0.0);
     // Colours of quantities have no pattern.
-    if (colour_source == ${kColourSource.body}) here = surface_at(grain, base);
+    if (source == ${kColourSource.body}) here = surface_at(grain, base);
     vec3 n = normalize(outward) * facing;
     float shade = sunlight(world_point, n);
     n = tilted(n, world_point, here.height * body_length, facing);
@@ -100,13 +101,12 @@ export function grainOf(box: Box3): { toGrain: Matrix3; length: number } {
   return { toGrain, length };
 }
 
-/** Returns the material of a solid's surface. `box` is its extent at rest. */
+/** Returns the material of a solid's surface. `length` is the body's longest side [m]. */
 export function solidMaterial(
   body: BodyUniforms,
   { floor, sun }: Surroundings,
-  box: Box3,
+  length: number,
 ): ShaderMaterial {
-  const { toGrain, length } = grainOf(box);
   return new ShaderMaterial({
     vertexShader: kVertexShader,
     fragmentShader: kFragmentShader,
@@ -114,7 +114,6 @@ export function solidMaterial(
       ...body,
       ...sun,
       floor_z: floor.floor_z,
-      to_grain: { value: toGrain },
       body_length: { value: length },
       opacity: { value: 1 },
     },
