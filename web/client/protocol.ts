@@ -901,6 +901,8 @@ export interface Diagnostics {
   emitted_particles: number;
   /** Number since time 0 */
   drained_particles: number;
+  /** Sum of the torques about the axles of bodies, without brakes; present with axles [N m] */
+  axle_torque?: number;
 }
 /** Saves the session's state under a name */
 export interface SessionSaveParams {
