@@ -1,0 +1,10 @@
+import { describe, expect, it } from 'vitest';
+import { levelText } from '../../../web/viewer/panel/levels';
+
+describe('levelText', () => {
+  it('names the level, its expected speed and the offered level', () => {
+    const entry = { level: 'fine', particles: 20_000, real_time_factor: 1.304 } as const;
+    expect(levelText(entry, 'fine')).toBe('fine · 1.30 × ✓');
+    expect(levelText(entry, 'normal')).toBe('fine · 1.30 ×');
+  });
+});
