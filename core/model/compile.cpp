@@ -153,8 +153,8 @@ RigidModel make_rigid(Model& model, std::size_t index) {
   RigidModel rigid;
   rigid.body = static_cast<Index>(index);
   rigid.particles = body.particles;
-  rigid.mass = properties.mass;
   rigid.inverse_mass = 1 / properties.mass;
+  rigid.mass = 1 / rigid.inverse_mass;
   rigid.motion = model.scene.bodies[index].motion;
   rigid.free_from = first_free_step(model.scene.bodies[index], model.scene.numerics.step);
   const Mat3 to_body =

@@ -47,7 +47,7 @@ void place_body(const Model& model, const ModelBody& body, Configuration& config
     state.center_of_mass += sample.masses[i] * sample.positions[i];
     state.momentum += sample.masses[i] * sample.velocities[i];
   }
-  state.center_of_mass *= 1 / rigid.mass;
+  state.center_of_mass *= rigid.axle ? 1 / rigid.mass : rigid.inverse_mass;
   // From the given angular velocity and I, not from the motion of the particles, which does not
   // include the spin of each particle as a sphere.
   state.angular_momentum =
