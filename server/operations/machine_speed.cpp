@@ -1,5 +1,6 @@
 #include "server/operations/machine_speed.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 #include <vector>
@@ -36,20 +37,23 @@ Real estimated_cost(const Scene& scene) {
   return estimate_cost(scene, pointers_to(bodies)).seconds;
 }
 
+/// The cost by the fastest step, which other programs have delayed least.
 Real measure_cost(const Scene& scene, TaskRunner* runner, InstructionSet instructions) {
   using Clock = std::chrono::steady_clock;
+  using Seconds = std::chrono::duration<double>;
   Result<Simulation> created = Simulation::create(scene, runner, instructions);
   VAT_CHECK(created.ok());
   Simulation& simulation = created.value();
   simulation.advance(2);  // allocates
-  const Real start = simulation.time();
-  const Clock::time_point begin = Clock::now();
-  std::chrono::duration<double> passed{};
-  do {
+  Seconds fastest = Seconds::max();
+  const Clock::time_point end = Clock::now() + MachineSpeed::kMeasuringTime;
+  for (Clock::time_point begin = Clock::now(); begin < end;) {
     simulation.advance(1);
-    passed = Clock::now() - begin;
-  } while (passed.count() < MachineSpeed::kMeasuringSeconds);
-  return passed.count() / (simulation.time() - start);
+    const Clock::time_point now = Clock::now();
+    fastest = std::min<Seconds>(fastest, now - begin);
+    begin = now;
+  }
+  return fastest.count() / scene.numerics.step;
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <mutex>
 #include <optional>
 
@@ -14,10 +15,10 @@ class MachineSpeed {
  public:
   /// Returns the expected simulated seconds per second of a valid scene: the inverse of its cost
   /// estimate, corrected by the measured speed. The first call measures, which takes about
-  /// kMeasuringSeconds. Thread-safe.
+  /// kMeasuringTime. Thread-safe.
   Real real_time_factor(const Scene& scene, TaskRunner* runner, InstructionSet instructions);
 
-  static constexpr double kMeasuringSeconds = 0.2;
+  static constexpr std::chrono::milliseconds kMeasuringTime{200};
 
  private:
   std::mutex mutex_;

@@ -1,13 +1,12 @@
 import type { Level, SceneLevelsResult, SessionDescription } from '../../client/index';
 import { element } from './elements';
-import { formatFactor } from './format';
 
 type Entry = SceneLevelsResult['levels'][number];
 
 /** Returns the text of a level: its name and its expected speed. */
 export function levelText({ level, real_time_factor: factor }: Entry, offered: Level): string {
-  const words = `${level} · ${formatFactor(factor)}`;
-  return level === offered ? `${words} ✓` : words;
+  const words = `${level} · ${factor < 10 ? factor.toFixed(1) : Math.round(factor)}×`;
+  return level === offered ? `✓ ${words}` : words;
 }
 
 /**
