@@ -54,11 +54,14 @@ struct Diagnostics {
   Real mean_density_error;             ///< liquids: mean of max(0, rho/rho_0 - 1); 0 without liquid
   Real max_density_error;              ///< liquids: maximum of rho/rho_0 - 1, at least 0
   std::optional<VolumeReport> volume;  ///< only for incompressible liquids
-  std::size_t torn_springs;            ///< number of static springs that have torn
-  std::size_t particles_outside;       ///< number of particles beyond a wall of the vat
-  std::size_t sleeping_bodies;         ///< number; see Scene::sleeping
-  std::uint64_t emitted_particles;     ///< number since time 0
-  std::uint64_t drained_particles;     ///< number since time 0
+  /// Sum of the torques about the axles of bodies [N m], without brakes, projected contacts and the
+  /// pressure of incompressible liquids; only for scenes with axles.
+  std::optional<Real> axle_torque;
+  std::size_t torn_springs;         ///< number of static springs that have torn
+  std::size_t particles_outside;    ///< number of particles beyond a wall of the vat
+  std::size_t sleeping_bodies;      ///< number; see Scene::sleeping
+  std::uint64_t emitted_particles;  ///< number since time 0
+  std::uint64_t drained_particles;  ///< number since time 0
 };
 
 }  // namespace vat

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/model/model.h"
+#include "core/state/rigid_motion.h"
 #include "core/support/check.h"
 
 namespace vat {
@@ -54,8 +55,7 @@ void find_inertias(const Equation& eq) {
     const Mat3 turn = eq.context.configuration.rigid[r].orientation.toRotationMatrix();
     const bool is_held = rigid.is_held(eq.context.step);
     bodies[r] = {
-        1 / rigid.inverse_mass, is_held ? 0 : rigid.inverse_mass,
-        turn * rigid.inertia * turn.transpose(),
+        rigid.mass, is_held ? 0 : rigid.inverse_mass, turn * rigid.inertia * turn.transpose(),
         is_held ? Mat3(Mat3::Zero()) : Mat3(turn * rigid.inverse_inertia * turn.transpose())};
   }
 }
@@ -315,6 +315,7 @@ void solve_damping(const ForceModel& f, const Configuration& from, Configuration
   }
   for (std::size_t r = 0; r < f.model.rigid_bodies.size(); ++r) {
     if (f.model.rigid_bodies[r].is_held(f.step)) continue;
+    apply_axle(f.model.rigid_bodies[r], scratch.force.linear[r], scratch.force.angular[r]);
     forces.rigid_force[r] += scratch.force.linear[r];
     forces.rigid_torque[r] += scratch.force.angular[r];
   }

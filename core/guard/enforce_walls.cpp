@@ -224,7 +224,7 @@ std::uint64_t enforce_walls(const Model& model, const GuardBounds& bounds, const
   for (std::size_t b = 0; b < model.rigid_bodies.size(); ++b) {
     const RigidModel& rigid = model.rigid_bodies[b];
     RigidState& state = now.rigid[b];
-    if (rigid.is_held(end.step) || is_clear(walls, state, bounds.half_sizes[b])) {
+    if (rigid.is_held(end.step) || rigid.axle || is_clear(walls, state, bounds.half_sizes[b])) {
       continue;
     }
     if (move_body_inside(walls, rigid, before.rigid[b].orientation, state, now)) ++stops;

@@ -66,6 +66,8 @@ Approach approach_of(const HandMotion& hand, int axis) {
   return {hand.target[axis] - hand.offset[axis], hand.velocity[axis]};
 }
 
+}  // namespace
+
 VatMotion slide_motion(const SlideMotion& slide, Real time) {
   const Vec3 axis = slide.axis.normalized();
   const Real rate = 2 * std::numbers::pi / slide.period;
@@ -74,8 +76,6 @@ VatMotion slide_motion(const SlideMotion& slide, Real time) {
           axis * (half_stroke * rate * std::sin(rate * time)),
           axis * (half_stroke * rate * rate * std::cos(rate * time))};
 }
-
-}  // namespace
 
 VatMotion hand_motion(const HandMotion& hand, Real time) {
   VatMotion motion;

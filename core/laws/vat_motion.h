@@ -5,13 +5,15 @@
 
 namespace vat {
 
-/// Displacement, velocity and acceleration of a moving vat.
+/// Displacement, velocity and acceleration of a moving vat or a driven body.
 struct VatMotion {
   Vec3 offset = Vec3::Zero();        ///< displacement from the position at time 0 [m]
   Vec3 velocity = Vec3::Zero();      ///< [m/s]
   Vec3 acceleration = Vec3::Zero();  ///< [m/s^2]
 };
 VatMotion vat_motion(const Vat& vat, Real time);
+/// Returns the motion of a vat or of a driven body by `slide`.
+VatMotion slide_motion(const SlideMotion& slide, Real time);
 /// Returns the part of the vat's motion that users cause. `time` must not be before `hand.start`.
 VatMotion hand_motion(const HandMotion& hand, Real time);
 /// Returns whether the motion caused by users continues at `time`.

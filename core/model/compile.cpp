@@ -125,8 +125,22 @@ void set_inertia(RigidModel& rigid, const Mat3& inertia) {
   rigid.splitting = w[0] - w[1] < w[1] - w[2] ? std::array{0, 1, 2} : std::array{1, 2, 0};
 }
 
+/// Leaves only rotations about the axle free. In the plane, there are no others.
+void set_axle(RigidModel& rigid, const Axle& axle, const Mat3& to_body, bool is_plane) {
+  const Vec3 direction = axle.direction.normalized();
+  rigid.axle = Axle{direction, axle.damping};
+  rigid.inverse_mass = 0;
+  if (is_plane) return;
+  const Vec3 own = to_body * direction;
+  const Real moment = own.dot(rigid.inertia * own);
+  rigid.inverse_inertia = own * own.transpose() / moment;
+  rigid.principal_axes = Quat::FromTwoVectors(Vec3::UnitX(), own);
+  rigid.inverse_moments = {1 / moment, 0, 0};
+  rigid.splitting = {1, 2, 0};
+}
+
 std::uint64_t first_free_step(const BodyDescription& body, Real step) {
-  return body.fixed ? kNever : first_step_from(body.release, step);
+  return body.fixed || body.motion ? kNever : first_step_from(body.release, step);
 }
 
 /// Returns the data of a rigid body, and sets those of its particles, which follow from its initial
@@ -140,12 +154,15 @@ RigidModel make_rigid(Model& model, std::size_t index) {
   rigid.body = static_cast<Index>(index);
   rigid.particles = body.particles;
   rigid.inverse_mass = 1 / properties.mass;
+  rigid.mass = 1 / rigid.inverse_mass;
+  rigid.motion = model.scene.bodies[index].motion;
   rigid.free_from = first_free_step(model.scene.bodies[index], model.scene.numerics.step);
   const Mat3 to_body =
       model.scene.bodies[index].orientation.normalized().toRotationMatrix().transpose();
   // In the plane, inertia is equal in all axes, and rounding must not change this.
   set_inertia(
       rigid, plane ? properties.inertia : Mat3(to_body * properties.inertia * to_body.transpose()));
+  if (const auto& axle = model.scene.bodies[index].axle) set_axle(rigid, *axle, to_body, plane);
   rigid.shape_origin = to_body * (model.scene.bodies[index].position - properties.center_of_mass);
   for (Index i = 0; i < body.particles.size(); ++i) {
     model.local_position[body.particles.begin - model.free_count + i] =

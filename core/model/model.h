@@ -128,15 +128,18 @@ struct CellCorner {
 struct RigidModel {
   Index body = 0;  ///< index into Model::bodies
   IndexRange particles;
-  Real inverse_mass = 0;
+  Real mass = 0;                     ///< [kg]
+  Real inverse_mass = 0;             ///< of translations; 0 with an axle
   Mat3 inertia;                      ///< I_body about the centre of mass, in body axes [kg m^2]
-  Mat3 inverse_inertia;              ///< in body axes
+  Mat3 inverse_inertia;              ///< in body axes; with an axle, of rotations about it only
   Quat principal_axes;               ///< rotation from principal to body axes
   Vec3 shape_origin = Vec3::Zero();  ///< see BodyView
   Vec3 inverse_moments;              ///< about the principal axes [1 / (kg m^2)]
   /// Order of the principal axes: the two with the closest moments of inertia, then the third.
   std::array<int, 3> splitting;
-  std::uint64_t free_from = 0;  ///< first nominal step in which forces act on the body
+  std::uint64_t free_from = 0;          ///< first nominal step in which forces act on the body
+  std::optional<SlideMotion> motion{};  ///< of a driven body, which is held
+  std::optional<Axle> axle{};           ///< with a direction of length 1
 
   /// Returns whether the body is held in `step`. A held body moves as if no force acted on it.
   bool is_held(std::uint64_t step) const { return step < free_from; }

@@ -13,6 +13,17 @@ void describe(Archive& archive, Of<Archive, Vat>& v) {
   auto& [min, max, lid, motion, walls, hand] = v;
   archive(min, max, lid, motion, walls);
 }
+/// Describes the fields of a body except `motion` and `axle`, which follow the state; see
+/// Snapshot::to_bytes().
+template <class Archive>
+void describe(Archive& archive, Of<Archive, BodyDescription>& v) {
+  auto& [name, kind, material, shape, spacing, mass, radius, position, orientation, velocity,
+         angular_velocity, springs, velocity_field, displacement_field, jitter, seed, release,
+         fixed, melting, motion, axle] = v;
+  archive(name, kind, material, shape, spacing, mass, radius, position, orientation, velocity,
+          angular_velocity, springs, velocity_field, displacement_field, jitter, seed, release,
+          fixed, melting);
+}
 /// Describes the fields of a material except `appearance`, which follows the state; see
 /// Snapshot::to_bytes().
 template <class Archive>

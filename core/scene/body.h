@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/scene/material.h"
+#include "core/scene/world.h"
 #include "core/support/names.h"
 
 namespace vat {
@@ -81,10 +82,17 @@ struct Melting {
   Real at = 0;       ///< [s]
 };
 
+/// Axle through the centre of mass of a rigid body. The centre of mass is at rest, and the body
+/// rotates about the axle only. A brake exerts the torque -damping * angular velocity.
+struct Axle {
+  Vec3 direction = Vec3::UnitY();  ///< world axes; any length except zero
+  Real damping = 0;                ///< of the brake [N m s]
+};
+
 /// Description of one body. `shape` is defined in the frame of the body. `position` and
 /// `orientation` place this frame in the world. `velocity` and `angular_velocity` are the initial
 /// velocities. `angular_velocity` is in world axes, about the centre of mass. Rigid bodies have
-/// neither fields nor jitter, and only rigid bodies can be held.
+/// neither fields nor jitter. Only rigid bodies can be held, driven, or have an axle.
 struct BodyDescription {
   std::string name;
   BodyKind kind = BodyKind::liquid;
@@ -108,6 +116,9 @@ struct BodyDescription {
   Real release = 0;
   bool fixed = false;                ///< true: held for all time
   std::optional<Melting> melting{};  ///< only for deformable bodies
+  /// A driven body follows this motion from its position at time 0, independent of forces.
+  std::optional<SlideMotion> motion{};
+  std::optional<Axle> axle{};
 };
 
 }  // namespace vat

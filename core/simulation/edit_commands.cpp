@@ -53,6 +53,14 @@ Status check_placement(const BodyPlacement& place, const ModelBody& body, int di
   return {};
 }
 
+/// Checks the velocity of a placement against the guidance of the body.
+Status check_guided_velocity(const BodyPlacement& place, const BodyDescription& body) {
+  if (!place.velocity || place.velocity->isZero(0)) return {};
+  if (body.motion) return Error{"not_allowed", "/velocity", "must be 0: the body is driven"};
+  if (body.axle) return Error{"not_allowed", "/velocity", "must be 0: the body has an axle"};
+  return {};
+}
+
 /// The new pose of a rigid body, or the shift of another body.
 struct Move {
   Vec3 shift = Vec3::Zero();  ///< [m]
@@ -100,12 +108,11 @@ void set_motion(const Move& move, const BodyPlacement& place, const Model& model
     RigidState& state = now.rigid[body.rigid];
     const RigidModel& rigid = model.rigid_bodies[body.rigid];
     const Vec3 omega = angular_velocity(rigid, state.orientation, state.angular_momentum);
-    const Mat3 turned = move.orientation.toRotationMatrix();
     state.center_of_mass = move.center;
     state.orientation = move.orientation;
-    state.angular_momentum = turned * rigid.inertia * turned.transpose() * omega;
+    state.angular_momentum = angular_momentum_of(rigid, state.orientation, omega);
     if (!place.velocity) return;
-    state.momentum = *place.velocity / rigid.inverse_mass;
+    state.momentum = momentum_of(rigid, *place.velocity);
     state.angular_momentum = Vec3::Zero();
     return;
   }
@@ -132,13 +139,15 @@ Status HostInterface::move_body(BodyId id, const BodyPlacement& placement) {
   const Scene& scene = impl_->all().scene;
   Status status = check_placement(placement, body, scene.dimensions);
   if (!status) return status;
+  const auto index = static_cast<std::size_t>(&body - impl_->all().bodies.data());
+  status = check_guided_velocity(placement, scene.bodies[index]);
+  if (!status) return status;
   const Move move = make_move(view, placement);
   if (scene.dimensions == 2 && std::abs(move.shift.y()) > 0) {
     return Error{"off_plane", "/position", "must stay in the plane y = 0 of the scene"};
   }
   std::vector<Vec3> places;
   for (std::size_t i = 0; i < view.positions.size(); ++i) places.push_back(move.place(view, i));
-  const auto index = static_cast<std::size_t>(&body - impl_->all().bodies.data());
   BodyDescription moved = describe_moved(impl_->all(), index, move, placement);
   if (!are_at_most(moved.position, kMaxLength)) {
     return out_of_range("/position", "such that the body began within 1e6 m of the origin");
@@ -179,9 +188,8 @@ void restore_motion(const PreservedMotion& kept, const Model& model, Configurati
   const ModelBody& body = *std::ranges::find(model.bodies, kept.body, &ModelBody::id);
   const RigidModel& rigid = model.rigid_bodies[body.rigid];
   RigidState& state = now.rigid[body.rigid];
-  const Mat3 turned = state.orientation.toRotationMatrix();
-  state.momentum = kept.velocity / rigid.inverse_mass;
-  state.angular_momentum = turned * rigid.inertia * turned.transpose() * kept.angular_velocity;
+  state.momentum = momentum_of(rigid, kept.velocity);
+  state.angular_momentum = angular_momentum_of(rigid, state.orientation, kept.angular_velocity);
 }
 
 /// Returns whether the length of a nozzle changes, which is the support radius.

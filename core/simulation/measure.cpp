@@ -8,6 +8,7 @@
 #include "core/laws/lennard_jones.h"
 #include "core/laws/vat_motion.h"
 #include "core/liquid/gas/liquid.h"
+#include "core/rigid/guided_bodies.h"
 #include "core/solid/spring_changes.h"
 #include "core/solid/volume.h"
 #include "core/state/rigid_motion.h"
@@ -207,6 +208,10 @@ Diagnostics measure(const ForceModel& force_model, Configuration at, Real time) 
     result.bodies.push_back(body.kind == BodyKind::rigid ? measure_rigid_body(model, body, at)
                                                          : measure_free_body(model, body, at));
     measure_outer_forces(body, at, forces, result.bodies.back());
+    if (body.kind != BodyKind::rigid || !model.rigid_bodies[body.rigid].axle) continue;
+    result.axle_torque =
+        result.axle_torque.value_or(0) +
+        torque_on_axle(model.rigid_bodies[body.rigid], result.bodies.back().outer_torque);
   }
   result.kinetic_energy = kinetic_energy(model, at);
   result.gravitational_energy = external_energy(model, at);

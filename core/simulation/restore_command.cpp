@@ -90,10 +90,9 @@ void set_motion(const BodyMotion& motion, const Model& model, const ModelBody& b
     RigidState& state = now.rigid[body.rigid];
     state.center_of_mass = motion.pose->center_of_mass;
     state.orientation = motion.pose->orientation.normalized();
-    const Mat3 turned = state.orientation.toRotationMatrix();
-    state.momentum = motion.pose->velocity / rigid.inverse_mass;
+    state.momentum = momentum_of(rigid, motion.pose->velocity);
     state.angular_momentum =
-        turned * (rigid.inertia * (turned.transpose() * motion.pose->angular_velocity));
+        angular_momentum_of(rigid, state.orientation, motion.pose->angular_velocity);
     return;
   }
   VAT_CHECK(motion.positions.size() == body.particles.size());

@@ -15,9 +15,22 @@
 namespace vat {
 namespace {
 
-/// Since version 2, the bytes end with the motion of the vat by a user, which may be absent, and
-/// the appearances of the materials. Version 1 ends with the motion, if there is one.
-constexpr Seal kSeal{"vat.sim\n", 2, "a saved simulation", 1};
+/// Since version 2, the state is followed by the motion of the vat by a user, which may be absent,
+/// and the appearances of the materials. Since version 3, the motions and axles of the bodies
+/// follow. Version 1 ends with the motion of the vat, if there is one.
+constexpr Seal kSeal{"vat.sim\n", 3, "a saved simulation", 1};
+
+/// The members of a body that its description in the bytes of a scene lacks.
+struct Guidance {
+  std::optional<SlideMotion> motion;
+  std::optional<Axle> axle;
+};
+
+std::vector<Guidance> guidances_of(const Scene& scene) {
+  std::vector<Guidance> guidances;
+  for (const BodyDescription& body : scene.bodies) guidances.push_back({body.motion, body.axle});
+  return guidances;
+}
 
 std::vector<Appearance> appearances_of(const Scene& scene) {
   std::vector<Appearance> appearances;
@@ -108,17 +121,24 @@ Status bad_bytes(const LoadingArchive& archive) {
 Status load_additions(LoadingArchive& archive, std::uint32_t version, Scene& scene) {
   std::optional<HandMotion> hand;
   std::vector<Appearance> appearances(scene.materials.size());
+  std::vector<Guidance> guidances(scene.bodies.size());
   if (version >= 2) {
     archive(hand, appearances);
+    if (version >= 3) archive(guidances);
   } else if (archive.left() > 0 && scene.vat) {
     archive(hand.emplace());
   }
   if (Status status = bad_bytes(archive); !status) return status;
-  if (appearances.size() != scene.materials.size() || (hand && !scene.vat)) {
+  if (appearances.size() != scene.materials.size() || guidances.size() != scene.bodies.size() ||
+      (hand && !scene.vat)) {
     return Error{"bad_value", "", "the end of the saved simulation does not fit its scene"};
   }
   for (std::size_t m = 0; m < appearances.size(); ++m) {
     scene.materials[m].appearance = appearances[m];
+  }
+  for (std::size_t b = 0; b < guidances.size(); ++b) {
+    scene.bodies[b].motion = guidances[b].motion;
+    scene.bodies[b].axle = guidances[b].axle;
   }
   if (!hand) return {};
   if (Status status = check_saved_hand(*hand); !status) return status;
@@ -138,7 +158,8 @@ std::vector<std::uint8_t> Snapshot::to_bytes() const {
           content_->sleepers != nullptr);
   if (content_->sleepers) archive(content_->sleepers->configuration, content_->sleepers->islands);
   archive(content_->state, content_->controls);
-  archive(all.scene.vat ? all.scene.vat->hand : std::nullopt, appearances_of(all.scene));
+  archive(all.scene.vat ? all.scene.vat->hand : std::nullopt, appearances_of(all.scene),
+          guidances_of(all.scene));
   close_seal(bytes);
   return bytes;
 }

@@ -25,6 +25,8 @@ bool is_in_drain(const Model& model, const ModelBody& body, const Configuration&
 
 bool prevents_sleep(const Scene& scene, Real time) {
   if (scene.vat && moves_walls(*scene.vat, time)) return true;
+  const auto is_moved = [](const BodyDescription& body) { return body.motion.has_value(); };
+  if (std::ranges::any_of(scene.bodies, is_moved)) return true;
   if (scene.settling && time < scene.settling->until) return true;
   return std::ranges::any_of(
       scene.emitters, [&](const Emitter& emitter) { return emitter.open && time < emitter.until; });

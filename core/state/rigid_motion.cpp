@@ -12,6 +12,23 @@ Vec3 angular_velocity(const RigidModel& rigid, const Quat& orientation,
   return r * (rigid.inverse_inertia * (r.transpose() * angular_momentum));
 }
 
+Vec3 momentum_of(const RigidModel& rigid, const Vec3& velocity) {
+  return rigid.axle ? Vec3(Vec3::Zero()) : Vec3(velocity / rigid.inverse_mass);
+}
+
+Vec3 angular_momentum_of(const RigidModel& rigid, const Quat& orientation, const Vec3& omega) {
+  const Mat3 r = orientation.toRotationMatrix();
+  const Vec3 whole = r * (rigid.inertia * (r.transpose() * omega));
+  if (!rigid.axle) return whole;
+  return rigid.axle->direction.dot(whole) * rigid.axle->direction;
+}
+
+void apply_axle(const RigidModel& rigid, Vec3& force, Vec3& torque) {
+  if (!rigid.axle) return;
+  force.setZero();
+  torque = rigid.axle->direction.dot(torque) * rigid.axle->direction;
+}
+
 Quat orientation_rate(const Quat& orientation, const Vec3& angular_velocity) {
   const Quat omega(0, angular_velocity.x(), angular_velocity.y(), angular_velocity.z());
   const Quat product = omega * orientation;

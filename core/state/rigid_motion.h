@@ -9,6 +9,14 @@ namespace vat {
 Vec3 angular_velocity(const RigidModel& rigid, const Quat& orientation,
                       const Vec3& angular_momentum);
 
+/// Returns the momentum of a body whose centre of mass has this velocity; zero with an axle.
+Vec3 momentum_of(const RigidModel& rigid, const Vec3& velocity);
+/// Returns the angular momentum L = I omega; with an axle, the part of L along the axle.
+Vec3 angular_momentum_of(const RigidModel& rigid, const Quat& orientation, const Vec3& omega);
+
+/// Sets the parts of a force and a torque to zero that the body's axle absorbs, if it has one.
+void apply_axle(const RigidModel& rigid, Vec3& force, Vec3& torque);
+
 /// Returns dq/dt = 1/2 (0, omega) q, Boldt eq. 8 in the form for a quaternion q.
 Quat orientation_rate(const Quat& orientation, const Vec3& angular_velocity);
 

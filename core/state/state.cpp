@@ -47,11 +47,11 @@ void place_body(const Model& model, const ModelBody& body, Configuration& config
     state.center_of_mass += sample.masses[i] * sample.positions[i];
     state.momentum += sample.masses[i] * sample.velocities[i];
   }
-  state.center_of_mass *= rigid.inverse_mass;
+  state.center_of_mass *= rigid.axle ? 1 / rigid.mass : rigid.inverse_mass;
   // From the given angular velocity and I, not from the motion of the particles, which does not
   // include the spin of each particle as a sphere.
-  const Mat3 r = state.orientation.toRotationMatrix();
-  state.angular_momentum = r * (rigid.inertia * (r.transpose() * description.angular_velocity));
+  state.angular_momentum =
+      angular_momentum_of(rigid, state.orientation, description.angular_velocity);
   pose_rigid_body(model, rigid, state, configuration);
 }
 

@@ -38,7 +38,8 @@ void choose_local_levels(const Model& model, const PresentSteps& steps, Real dt,
   }
   for (std::size_t b = 0; b < model.rigid_bodies.size(); ++b) {
     const RigidModel& rigid = model.rigid_bodies[b];
-    const std::uint8_t level = rigid.inverse_mass == 0 ? 0 : small_level_of(steps.rigid[b], dt);
+    const bool is_moved = rigid.inverse_mass > 0 || rigid.axle;
+    const std::uint8_t level = !is_moved ? 0 : small_level_of(steps.rigid[b], dt);
     std::fill(levels.particle.begin() + rigid.particles.begin,
               levels.particle.begin() + rigid.particles.end, level);
   }

@@ -12,7 +12,8 @@ namespace {
 
 bool is_moved(const Model& model, Index i) {
   if (i < model.free_count) return model.inverse_mass[i] > 0;
-  return model.rigid_bodies[model.bodies[model.body[i]].rigid].inverse_mass > 0;
+  const RigidModel& rigid = model.rigid_bodies[model.bodies[model.body[i]].rigid];
+  return rigid.inverse_mass > 0 || rigid.axle;
 }
 
 /// Sorts from the finest level to the coarsest, keeping the order of equal levels. There are few

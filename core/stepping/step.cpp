@@ -1,4 +1,4 @@
-
+#include "core/rigid/guided_bodies.h"
 #include "core/solid/spring_changes.h"
 #include "core/stepping/step_parts.h"
 #include "core/stepping/stepper.h"
@@ -10,6 +10,7 @@ std::optional<Fault> Stepper::take_step(const StepInput& input, const StepInterv
   const Real dt = interval.length;
   const StepArguments step{input.force_model, input.state, interval.start, dt, scratch_};
 
+  start_driven_bodies(input.model(), interval.start, interval.end, input.state.now);
   if (input.numerics().control == StepControl::local) {
     take_local_step(input, interval);
   } else if (integrator.take_step != nullptr) {
@@ -26,6 +27,7 @@ std::optional<Fault> Stepper::take_step(const StepInput& input, const StepInterv
     drift_particles(step);
     correct_liquid_positions(step);
     apply_spring_changes(step);
+    set_driven_velocities(input.model(), interval.end, input.state.now);
     // Evaluate and kick: the forces at the end of the step.
     if (integrator.keeps_forces()) {
       evaluate_at_end(step);
@@ -36,6 +38,9 @@ std::optional<Fault> Stepper::take_step(const StepInput& input, const StepInterv
     damp_springs(step, dt / 2);
     if (integrator.keeps_forces()) input.state.forces_current = true;
   }
+
+  set_driven_velocities(input.model(), interval.end, input.state.now);
+  brake_axles(input.model(), dt, input.state.now);
 
   // Check: the state as the step left it, and again if a wall has changed it.
   if (input.numerics().control != StepControl::local) input.report.count_steps(1, dt, dt);

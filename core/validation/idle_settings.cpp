@@ -179,6 +179,10 @@ void warn_of_idle_settings(const Scene& scene, std::vector<Warning>& warnings) {
   if (scene.sleeping && scene.vat && moves_walls(*scene.vat, 0)) {
     warn("/sleeping", "bodies do not sleep in a moving vat", warnings);
   }
+  const auto is_moved = [](const BodyDescription& body) { return body.motion.has_value(); };
+  if (scene.sleeping && std::ranges::any_of(scene.bodies, is_moved)) {
+    warn("/sleeping", "bodies do not sleep beside a driven body", warnings);
+  }
   warn_of_solver(scene, warnings);
   warn_of_tolerance(scene.numerics, warnings);
   warn_of_surfaces(scene, warnings);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/limits.h"
 #include "core/validation/validate_parts.h"
@@ -62,7 +63,59 @@ void check_hold(const BodyDescription& body, const std::string& path, RangeCheck
   }
 }
 
+/// Checks that a guided body is rigid, and that its first velocity is zero.
+void check_guided(const BodyDescription& body, const std::string& path, const char* member,
+                  RangeCheck& check) {
+  if (body.kind != BodyKind::rigid) {
+    check.add("not_allowed", path + member, "only a rigid body has one");
+  }
+  if (!body.velocity.isZero(0)) {
+    check.add("not_allowed", path + "/velocity",
+              std::string("must be 0, since the body has \"") + (member + 1) + '"');
+  }
+}
+
+void check_drive(const BodyDescription& body, const std::string& path, RangeCheck& check) {
+  check_slide(*body.motion, path + "/motion", check);
+  check_guided(body, path, "/motion", check);
+  if (body.fixed) check.add("not_allowed", path + "/fixed", "must be false: the body is driven");
+  if (body.release > 0) {
+    check.add("not_allowed", path + "/release", "must be 0: a driven body is never released");
+  }
+  if (body.axle) check.add("not_allowed", path + "/axle", "a driven body has none");
+}
+
+void check_axle(const BodyDescription& body, const std::string& path, RangeCheck& check) {
+  const Axle& axle = *body.axle;
+  check_guided(body, path, "/axle", check);
+  check.real(axle.damping, 0, kMaxDamping, path + "/axle/damping");
+  if (body.fixed) check.add("not_allowed", path + "/fixed", "must be false: the body has an axle");
+  const std::string at = path + "/axle/direction";
+  if (!check.vector(axle.direction, -kMaxLength, kMaxLength, at)) return;
+  if (axle.direction.norm() < kMinLength) {
+    check.add("out_of_range", at, "must not be the zero vector");
+    return;
+  }
+  constexpr Real kRounding = 1e-6;
+  const Vec3& spin = body.angular_velocity;
+  if (spin.cross(axle.direction.normalized()).norm() > kRounding * spin.norm()) {
+    check.add("out_of_range", path + "/angular_velocity", "must be along the axle");
+  }
+}
+
 }  // namespace
+
+void check_slide(const SlideMotion& motion, const std::string& path, RangeCheck& check) {
+  if (check.vector(motion.axis, -kMaxLength, kMaxLength, path + "/axis") &&
+      motion.axis.norm() < kMinLength) {
+    check.add("out_of_range", path + "/axis", "must not be the zero vector");
+  }
+  const bool stroke = check.real(motion.stroke, -kMaxLength, kMaxLength, path + "/stroke");
+  const bool period = check.real(motion.period, kMinPeriod, kMaxPeriod, path + "/period");
+  if (stroke && period && std::numbers::pi * std::abs(motion.stroke) / motion.period > kMaxSpeed) {
+    check.add("out_of_range", path + "/period", "is too short: the motion would pass 10000 m/s");
+  }
+}
 
 void check_motion(const BodyDescription& body, const std::string& path, RangeCheck& check) {
   check.vector(body.position, -kMaxLength, kMaxLength, path + "/position");
@@ -76,6 +129,8 @@ void check_motion(const BodyDescription& body, const std::string& path, RangeChe
   check_fields(body, path, check);
   check_jitter(body, path, check);
   check_hold(body, path, check);
+  if (body.motion) check_drive(body, path, check);
+  if (body.axle) check_axle(body, path, check);
 }
 
 void check_start(const BodyDescription& body, const SampledBody& sample, const std::string& path,

@@ -42,6 +42,8 @@ void check_spring_changes(const Material& material, const std::string& path, Ran
 /// Checks that the numerics support the spring settings of the materials.
 void check_spring_numerics(const Scene& scene, RangeCheck& check);
 
+/// Checks the sliding motion of the vat or of a driven body.
+void check_slide(const SlideMotion& motion, const std::string& path, RangeCheck& check);
 void check_vat(const Scene& scene, RangeCheck& check);
 void check_periodicity(const Periodicity& periodic, RangeCheck& check);
 void check_central_field(const CentralField& field, RangeCheck& check);

@@ -88,6 +88,10 @@ void check_body_in_plane(const BodyDescription& body, const std::string& path, R
   plane.zero_y(body.velocity, path + "/velocity");
   plane.about_y(body.orientation.x(), body.orientation.z(), path + "/orientation");
   plane.about_y(body.angular_velocity.x(), body.angular_velocity.z(), path + "/angular_velocity");
+  if (body.motion) plane.zero_y(body.motion->axis, path + "/motion/axis");
+  if (body.axle) {
+    plane.about_y(body.axle->direction.x(), body.axle->direction.z(), path + "/axle/direction");
+  }
   check_field(body.velocity_field, path + "/velocity_field", plane);
   check_field(body.displacement_field, path + "/displacement_field", plane);
 }

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <sstream>
 
 #include "core/limits.h"
@@ -12,18 +11,6 @@ namespace {
 
 bool repeats(const Scene& scene, std::size_t axis) {
   return scene.periodic && scene.periodic->axes[axis];
-}
-
-void check_slide(const SlideMotion& motion, const std::string& path, RangeCheck& check) {
-  if (check.vector(motion.axis, -kMaxLength, kMaxLength, path + "/axis") &&
-      motion.axis.norm() < kMinLength) {
-    check.add("out_of_range", path + "/axis", "must not be the zero vector");
-  }
-  const bool stroke = check.real(motion.stroke, -kMaxLength, kMaxLength, path + "/stroke");
-  const bool period = check.real(motion.period, kMinPeriod, kMaxPeriod, path + "/period");
-  if (stroke && period && std::numbers::pi * std::abs(motion.stroke) / motion.period > kMaxSpeed) {
-    check.add("out_of_range", path + "/period", "is too short: the vat would pass 10000 m/s");
-  }
 }
 
 /// The reason why this wall does not exist; null if it exists.

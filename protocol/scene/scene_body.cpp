@@ -185,6 +185,15 @@ Melting to_melting(const Json& value, std::string path, Errors& errors) {
   return melting;
 }
 
+Axle to_axle(const Json& value, std::string path, Errors& errors) {
+  ObjectReader reader(value, std::move(path), errors);
+  Axle axle;
+  axle.direction = reader.vector("direction", -kMaxLength, kMaxLength, axle.direction);
+  axle.damping = reader.real("damping", 0, kMaxDamping, axle.damping);
+  reader.refuse_unknown();
+  return axle;
+}
+
 void read_placement(ObjectReader& reader, BodyDescription& body, Errors& errors) {
   body.position = reader.vector("position", -kMaxLength, kMaxLength, body.position);
   read_member(reader, "orientation", body.orientation, errors, to_orientation);
@@ -199,6 +208,8 @@ void read_placement(ObjectReader& reader, BodyDescription& body, Errors& errors)
   body.fixed = reader.boolean("fixed", body.fixed);
   body.release = reader.real("release", 0, kMaxRelease, body.release);
   read_member(reader, "melting", body.melting, errors, to_melting);
+  read_member(reader, "motion", body.motion, errors, to_motion);
+  read_member(reader, "axle", body.axle, errors, to_axle);
 }
 
 }  // namespace

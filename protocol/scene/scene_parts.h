@@ -45,6 +45,8 @@ SpringConstants to_spring_constants(ObjectReader& reader);
 InterfaceConstants to_interface_constants(const Json& value, std::string path, Errors& errors);
 Material to_material(const Json& value, std::string path, Errors& errors);
 InterfaceDescription to_interface(const Json& value, std::string path, Errors& errors);
+/// Returns the sliding motion of the vat or of a driven body.
+SlideMotion to_motion(const Json& value, std::string path, Errors& errors);
 Vat to_vat(const Json& value, std::string path, Errors& errors);
 Periodicity to_periodicity(const Json& value, std::string path, Errors& errors);
 CentralField to_central_field(const Json& value, std::string path, Errors& errors);

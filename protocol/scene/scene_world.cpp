@@ -6,17 +6,6 @@
 namespace vat::scene_parts {
 namespace {
 
-SlideMotion to_motion(const Json& value, std::string path, Errors& errors) {
-  ObjectReader reader(value, std::move(path), errors);
-  reader.choice("type", {"slide"});
-  SlideMotion motion;
-  motion.axis = reader.vector("axis", -kMaxLength, kMaxLength, motion.axis);
-  motion.stroke = reader.real("stroke", -kMaxLength, kMaxLength);
-  motion.period = reader.real("period", kAnyMin, kAnyMax, motion.period);
-  reader.refuse_unknown();
-  return motion;
-}
-
 Wall to_wall(const Json& value, std::string path, Errors& errors) {
   ObjectReader reader(value, std::move(path), errors);
   Wall wall;
@@ -53,6 +42,17 @@ void mark_axis(const Json& value, const std::string& path, std::array<bool, 3>& 
 }
 
 }  // namespace
+
+SlideMotion to_motion(const Json& value, std::string path, Errors& errors) {
+  ObjectReader reader(value, std::move(path), errors);
+  reader.choice("type", {"slide"});
+  SlideMotion motion;
+  motion.axis = reader.vector("axis", -kMaxLength, kMaxLength, motion.axis);
+  motion.stroke = reader.real("stroke", -kMaxLength, kMaxLength);
+  motion.period = reader.real("period", kAnyMin, kAnyMax, motion.period);
+  reader.refuse_unknown();
+  return motion;
+}
 
 Vat to_vat(const Json& value, std::string path, Errors& errors) {
   ObjectReader reader(value, std::move(path), errors);

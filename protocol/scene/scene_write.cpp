@@ -83,17 +83,19 @@ Json to_json(const std::array<Wall, 6>& walls) {
   return json;
 }
 
+Json to_json(const SlideMotion& motion) {
+  return {{"type", "slide"},
+          {"axis", to_json(motion.axis)},
+          {"stroke", motion.stroke},
+          {"period", motion.period}};
+}
+
 Json to_json(const Vat& vat) {
   Json json = {{"min", to_json(vat.min)},
                {"max", to_json(vat.max)},
                {"lid", vat.lid},
                {"walls", to_json(vat.walls)}};
-  if (vat.motion) {
-    json["motion"] = {{"type", "slide"},
-                      {"axis", to_json(vat.motion->axis)},
-                      {"stroke", vat.motion->stroke},
-                      {"period", vat.motion->period}};
-  }
+  if (vat.motion) json["motion"] = to_json(*vat.motion);
   return json;
 }
 
@@ -196,6 +198,10 @@ Json to_json(const BodyDescription& body) {
   if (body.radius) json["radius"] = *body.radius;
   for (const SpringDescription& spring : body.springs) json["springs"].push_back(to_json(spring));
   if (body.melting) json["melting"] = {{"into", body.melting->into}, {"at", body.melting->at}};
+  if (body.motion) json["motion"] = to_json(*body.motion);
+  if (body.axle) {
+    json["axle"] = {{"direction", to_json(body.axle->direction)}, {"damping", body.axle->damping}};
+  }
   if (body.velocity_field) json["velocity_field"] = to_json(*body.velocity_field);
   if (body.displacement_field) json["displacement_field"] = to_json(*body.displacement_field);
   return json;

@@ -6,6 +6,7 @@
 
 #include "server/directory/server_settings.h"
 #include "server/http/downloads.h"
+#include "server/operations/machine_speed.h"
 #include "server/replay/imports.h"
 #include "server/session/core/session_environment.h"
 #include "server/session/ticks/slow_tick_gate.h"
@@ -60,6 +61,7 @@ struct ServerResources {
   boost::asio::strand<boost::asio::thread_pool::executor_type> creations;
   /// Strand of `storage_threads` for requests to the server that use the storage.
   boost::asio::strand<boost::asio::thread_pool::executor_type> storage_requests;
+  mutable MachineSpeed speed;
 
   SavedScenes& saved_scenes() const { return *environment.scenes; }
 };

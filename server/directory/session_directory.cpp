@@ -129,7 +129,7 @@ std::variant<SessionId, RpcError> SessionDirectory::create(std::string name, con
 }
 
 std::optional<RpcError> SessionDirectory::create_later(PendingReply& reply, std::string name,
-                                                       Json scene) {
+                                                       Json scene, Level level) {
   const std::lock_guard lock(tables_.mutex);
   if (auto error = admission_.refuse_session()) return error;
   const Client* client = tables_.clients.find(reply);
@@ -142,10 +142,10 @@ std::optional<RpcError> SessionDirectory::create_later(PendingReply& reply, std:
   boost::asio::post(
       resources_.creations,
       [this, creator = std::get<SessionCreator>(std::move(admitted)), reply = std::move(reply),
-       name = std::move(name), scene = std::move(scene)]() mutable {
+       name = std::move(name), scene = std::move(scene), level]() mutable {
         const ThreadPoolRunner::HelperReservation reservation(resources_.runner);
         answer_with(reply, "session.create failed",
-                    [&] { return create_from(scene, std::move(name), std::move(creator)); });
+                    [&] { return create_from(scene, level, std::move(name), std::move(creator)); });
       });
   return {};
 }
@@ -157,13 +157,13 @@ void SessionDirectory::use_storage(PendingReply& reply, std::function<RpcResult(
                     });
 }
 
-RpcResult SessionDirectory::create_from(const Json& scene, std::string name,
+RpcResult SessionDirectory::create_from(const Json& scene, Level level, std::string name,
                                         SessionCreator creator) {
   {
     const std::lock_guard lock(tables_.mutex);
     if (auto error = admission_.refuse_session()) return *std::move(error);  // before the reading
   }
-  auto read = read_named_scene(scene, resources_.environment);
+  auto read = read_named_scene(scene, level, resources_.environment);
   if (auto* error = std::get_if<RpcError>(&read)) return std::move(*error);
   auto created = create(std::move(name), std::get<Scene>(read), std::move(creator));
   if (auto* error = std::get_if<RpcError>(&created)) return std::move(*error);

@@ -11,6 +11,7 @@
 #include <variant>
 #include <vector>
 
+#include "protocol/scene/level.h"
 #include "server/directory/access_control.h"
 #include "server/directory/admission.h"
 #include "server/directory/replay_opener.h"
@@ -58,7 +59,8 @@ class SessionDirectory {
   void use_storage(PendingReply& reply, std::function<RpcResult()> work);
   /// Creates a session on a storage thread, and then answers. Errors that are known immediately
   /// are returned instead.
-  std::optional<RpcError> create_later(PendingReply& reply, std::string name, Json scene);
+  std::optional<RpcError> create_later(PendingReply& reply, std::string name, Json scene,
+                                       Level level);
   struct Listed {
     SessionId id;
     SessionSummary summary;
@@ -103,7 +105,7 @@ class SessionDirectory {
   std::optional<Stored> store(const std::string& name, const Scene& scene);
   /// Measures and estimates the memory by use.
   ServerMetrics::Memory memory_use();
-  RpcResult create_from(const Json& scene, std::string name, SessionCreator creator);
+  RpcResult create_from(const Json& scene, Level level, std::string name, SessionCreator creator);
   void undo_join(ConnectionId id, SessionNumber session);
   void end_expired();
 

@@ -166,17 +166,19 @@ Json describe_diagnostics(const Diagnostics& diagnostics) {
     momentum += body.linear_momentum;
     angular_momentum += body.angular_momentum;
   }
-  return {{"kinetic_energy", diagnostics.kinetic_energy},
-          {"gravitational_energy", diagnostics.gravitational_energy},
-          {"elastic_energy", diagnostics.elastic_energy},
-          {"contact_energy", diagnostics.contact_energy},
-          {"momentum", to_json(momentum)},
-          {"angular_momentum", to_json(angular_momentum)},
-          {"mean_density_error", diagnostics.mean_density_error},
-          {"max_density_error", diagnostics.max_density_error},
-          {"torn_springs", diagnostics.torn_springs},
-          {"emitted_particles", diagnostics.emitted_particles},
-          {"drained_particles", diagnostics.drained_particles}};
+  Json json = {{"kinetic_energy", diagnostics.kinetic_energy},
+               {"gravitational_energy", diagnostics.gravitational_energy},
+               {"elastic_energy", diagnostics.elastic_energy},
+               {"contact_energy", diagnostics.contact_energy},
+               {"momentum", to_json(momentum)},
+               {"angular_momentum", to_json(angular_momentum)},
+               {"mean_density_error", diagnostics.mean_density_error},
+               {"max_density_error", diagnostics.max_density_error},
+               {"torn_springs", diagnostics.torn_springs},
+               {"emitted_particles", diagnostics.emitted_particles},
+               {"drained_particles", diagnostics.drained_particles}};
+  if (diagnostics.axle_torque) json["axle_torque"] = *diagnostics.axle_torque;
+  return json;
 }
 
 Json describe_guard(const GuardEvent& event, std::uint64_t tick) {

@@ -7,9 +7,9 @@
 namespace vat {
 namespace {
 
-ActionResult load_scene(SessionCore& core, const Json& value) {
+ActionResult load_scene(SessionCore& core, const Json& value, Level level) {
   const SessionEnvironment& environment = core.environment();
-  auto scene = read_client_scene(value, environment.catalogue);
+  auto scene = read_client_scene(value, environment.catalogue, level);
   if (auto* error = std::get_if<RpcError>(&scene)) return std::move(*error);
   // The session keeps its instruction set, so that its log reproduces the same bits.
   auto simulation = make_simulation(std::get<Scene>(scene), environment,
@@ -25,7 +25,12 @@ ActionResult load_scene(SessionCore& core, const Json& value) {
 }  // namespace
 
 SessionAction read_scene_load(ObjectReader& params, Errors&) {
-  return read_action_on("scene", params, load_scene);
+  const Json* value = params.member("scene", true);
+  const Level level = read_level(params);
+  if (value == nullptr) return {};
+  return [value = *value, level](SessionCore& core, Participant&) {
+    return load_scene(core, value, level);
+  };
 }
 
 SessionAction read_control_play(ObjectReader&, Errors&) {

@@ -23,6 +23,7 @@ using SessionHandler = SessionAction (*)(ObjectReader& params, Errors& errors);
 // server.cpp
 ServerAction read_server_info(ObjectReader& params, Errors& errors);
 ServerAction read_scene_list(ObjectReader& params, Errors& errors);
+ServerAction read_scene_levels(ObjectReader& params, Errors& errors);
 
 // scene.cpp
 SessionAction read_scene_get(ObjectReader& params, Errors& errors);

@@ -4,6 +4,7 @@
 #include "server/methods/handlers.h"
 #include "server/methods/parts.h"
 #include "server/people/person_name.h"
+#include "server/session/core/scene_loading.h"
 
 namespace vat {
 namespace {
@@ -23,9 +24,10 @@ void add_clients(Json& session, const SessionSummary& summary) {
 ServerAction read_session_create(ObjectReader& params, Errors&) {
   std::string name = params.text("name", kMaxNameLength);
   const Json* scene = params.member("scene", true);
+  const Level level = read_level(params);
   if (scene == nullptr) return {};
-  return [name, scene = *scene](SessionDirectory& directory, PendingReply& reply) {
-    return to_answer(directory.create_later(reply, name, scene));
+  return [name, scene = *scene, level](SessionDirectory& directory, PendingReply& reply) {
+    return to_answer(directory.create_later(reply, name, scene, level));
   };
 }
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/support/check.h"
+#include "protocol/scene/level.h"
 #include "server/frames/frame_domain.h"
 #include "server/messages/describe.h"
 
@@ -117,7 +118,8 @@ std::string FrameRecorder::describe(const Simulation& simulation) const {
   return Json{{"program", VAT_VERSION},
               {"instruction_set", to_string(simulation.instruction_set())},
               {"epoch", epoch_},
-              {"scene", scene.name},
+              {"scene", split_level(scene.name).scene},
+              {"level", to_string(split_level(scene.name).level)},
               {"title", scene.title},
               {"tick_seconds", settings_.frame_seconds},
               {"gravity", to_json(scene.gravity)},

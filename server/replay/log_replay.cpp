@@ -1,5 +1,6 @@
 #include "server/replay/log_replay.h"
 
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -50,7 +51,11 @@ Simulation load_entry_scene(const LogEntry& entry, const SessionEnvironment& env
   const Json params = parse_entry_params(entry);
   const auto value = params.find("scene");
   if (value == params.end()) fail_entry(entry, "it has no scene");
-  const auto scene = read_client_scene(*value, environment.catalogue);
+  const Json name = params.value("level", Json(to_string(Level::normal)));
+  const std::optional<Level> level =
+      name.is_string() ? find_level(name.get_ref<const std::string&>()) : std::nullopt;
+  if (!level) fail_entry(entry, "it has an unknown level");
+  const auto scene = read_client_scene(*value, environment.catalogue, *level);
   if (const auto* error = std::get_if<RpcError>(&scene)) fail_entry(entry, error->message);
   auto simulation = make_simulation(std::get<Scene>(scene), environment, instructions);
   if (const auto* error = std::get_if<RpcError>(&simulation)) fail_entry(entry, error->message);

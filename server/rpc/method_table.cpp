@@ -22,6 +22,7 @@ constexpr auto kMethods = [] {
     // name, least role, whose role, rate class, logged as, handler
     {"server.info",          none,       connection,  query,   kNoLog, read_server_info},
     {"scene.list",           viewer,     connection,  query,   kNoLog, read_scene_list},
+    {"scene.levels",         viewer,     connection,  query,   kNoLog, read_scene_levels},
     {"scene.get",            viewer,     participant, scene,   kNoLog, read_scene_get},
     {"session.create",       controller, connection,  scene,   kNoLog, read_session_create},
     {"session.list",         viewer,     connection,  query,   kNoLog, read_session_list},

@@ -1,5 +1,5 @@
 import { expect, it } from 'vitest';
-import { Visits } from './support/visits';
+import { kInTime, Visits } from './support/visits';
 
 /** The slim bar over the picture at the first visit, and the panel that it extends to. */
 const visits = new Visits();
@@ -23,6 +23,25 @@ it('shows the picture on the whole page, with one slim bar', async () => {
     expect(box.x + box.width, id).toBeLessThanOrEqual(bar.x + bar.width);
   }
   expect(await page.isVisible('#sections')).toBe(false);
+});
+
+it('shows the levels of the scene with their speeds, and loads the chosen one', async () => {
+  await visits.visit('rigid-stack', kFresh);
+  const { page } = visits.viewer;
+  await page.waitForSelector('#level:enabled');
+  const bar = (await page.locator('#panel').boundingBox())!;
+  const box = (await page.locator('#level').boundingBox())!;
+  expect(bar.x + bar.width).toBeLessThanOrEqual(1000);
+  expect(box.x + box.width).toBeLessThanOrEqual(bar.x + bar.width);
+  const texts = await page.locator('#level option').allTextContents();
+  const names = texts.map((text) => /(\w+) · [\d.]+×$/.exec(text)?.[1]);
+  expect(names).toEqual(['coarse', 'normal', 'fine', 'finest']);
+  expect(texts.filter((text) => text.startsWith('✓ '))).toHaveLength(1);
+  const levelOf = async () => (await visits.observer.request('session.join', {})).description.level;
+  expect(await page.locator('#level').inputValue()).toBe('normal');
+  await page.selectOption('#level', 'coarse');
+  await expect.poll(levelOf, kInTime).toBe('coarse');
+  expect(await page.locator('#level').inputValue()).toBe('coarse');
 });
 
 it('extends to the panel by one click, also at the next visit', async () => {

@@ -49,6 +49,18 @@ TEST(Simulate, CatalogueScenesAreTheSameForAnyThreadCount) {
   EXPECT_GE(count, 6u);
 }
 
+TEST(Simulate, TakesALevelOfDetail) {
+  const std::string scene = VAT_SOURCE_DIR "/protocol/scenes/dam-break.json";
+  const std::string normal = hash_of(scene, {"--until", "0.02"});
+  EXPECT_EQ(hash_of(scene, {"--until", "0.02", "--level", "normal"}), normal);
+  EXPECT_NE(hash_of(scene, {"--until", "0.02", "--level", "coarse"}), normal);
+  EXPECT_EQ(run_vat({"simulate", scene, "--level", "huge"}).exit_code, 2);
+  const ProgramResult given =
+      run_vat({"simulate", VAT_SOURCE_DIR "/protocol/scenes/tilted-floor.json", "--level", "fine"});
+  EXPECT_EQ(given.exit_code, 1);
+  EXPECT_THAT(given.err, HasSubstr("/shape/type"));
+}
+
 TEST(Simulate, HashDoesNotDependOnOutputs) {
   const TemporaryFolder folder;
   const std::string without = hash_of({"--until", "0.2"});

@@ -30,6 +30,7 @@ std::vector<Case> collect_cases() {
                            liquid_dam_break_cases,
                            tait_dam_break_cases,
                            liquid_tank_cases,
+                           liquid_piston_cases,
                            two_liquid_cases,
                            liquid_jet_cases,
                            liquid_vortex_cases,

@@ -32,6 +32,7 @@ std::vector<Case> liquid_surface_cases();
 std::vector<Case> liquid_column_cases();
 std::vector<Case> liquid_dam_break_cases();
 std::vector<Case> liquid_tank_cases();
+std::vector<Case> liquid_piston_cases();
 std::vector<Case> two_liquid_cases();
 std::vector<Case> liquid_jet_cases();
 std::vector<Case> liquid_vortex_cases();

@@ -13,6 +13,8 @@ export type Token = string;
 export type Role = 'viewer' | 'controller' | 'owner' | 'admin';
 /** Identifies a session during the life of the server */
 export type SessionId = string;
+
+export type Level = 'coarse' | 'normal' | 'fine' | 'finest';
 /** The session's tick from which the command is in effect; 0 after a reset. */
 export type Tick = number;
 /** [x, y, z] in SI units; z points up */
@@ -183,6 +185,7 @@ export interface SessionDescription {
   name: string;
   /** Name of the scene */
   scene: string;
+  level?: Level;
   /** Title of the scene */
   title: string;
   playing: boolean;
@@ -653,6 +656,22 @@ export interface SceneEntry {
   /** Saved scenes: time of saving [s since 1970] */
   saved?: number;
 }
+/** Returns the levels of detail of a catalogue scene */
+export interface SceneLevelsParams {
+  scene: Name;
+}
+
+export interface SceneLevelsResult {
+  /** Levels that the server accepts, from coarse to finest */
+  levels: {
+    level: Level;
+    /** Maximum number */
+    particles: number;
+    /** Expected simulated seconds per second, if no other session plays */
+    real_time_factor: number;
+  }[];
+  offered: Level;
+}
 /** Returns a complete scene */
 export interface SceneGetParams {
   scene?: Name;
@@ -667,6 +686,7 @@ export interface SceneGetResult {
 /** Replaces the session's scene, at tick 0 */
 export interface SceneLoadParams {
   scene: SceneReference;
+  level?: Level;
 }
 /** Saves a scene for all sessions */
 export interface SceneSaveParams {
@@ -754,6 +774,7 @@ export interface ServerDrainResult {
 export interface SessionCreateParams {
   name: Name;
   scene: SceneReference;
+  level?: Level;
 }
 
 export interface SessionCreateResult {
@@ -901,6 +922,8 @@ export interface Diagnostics {
   emitted_particles: number;
   /** Number since time 0 */
   drained_particles: number;
+  /** Sum of the torques about the axles of bodies, without brakes; present with axles [N m] */
+  axle_torque?: number;
 }
 /** Saves the session's state under a name */
 export interface SessionSaveParams {
@@ -1113,6 +1136,7 @@ export interface Methods {
   'replay.info': { params: Nothing; result: ReplayInfoResult };
   'replay.seek': { params: ReplaySeekParams; result: ReplaySeekResult };
   'scene.list': { params: Nothing; result: SceneListResult };
+  'scene.levels': { params: SceneLevelsParams; result: SceneLevelsResult };
   'scene.get': { params: SceneGetParams; result: SceneGetResult };
   'scene.load': { params: SceneLoadParams; result: InEffect };
   'scene.save': { params: SceneSaveParams; result: SceneSaveResult };

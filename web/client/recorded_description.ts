@@ -12,6 +12,7 @@ export interface RecordedScene {
 const kMostBodies = 4096;
 const kMostMaterials = 4096;
 const kMostParticles = 1_000_000;
+const kLevels = ['coarse', 'normal', 'fine', 'finest'] as const;
 
 /**
  * Reads a description. Its values come from a file, so that each one is checked. Omits unknown
@@ -32,6 +33,7 @@ export function readDescription(bytes: ArrayBuffer, firstFrame: number): Recorde
     session: '',
     name: title === '' ? scene : title,
     scene,
+    ...(members.level !== undefined && { level: choiceOf(members.level, 'level', kLevels) }),
     title,
     epoch: countOf(members.epoch, 'epoch'),
     tick: 0,

@@ -175,18 +175,20 @@ export interface Wall {
   velocity?: Speed;
 }
 
+export interface Motion {
+  type: 'slide';
+  axis?: Direction;
+  /** [m] */
+  stroke: number;
+  /** [s] */
+  period?: number;
+}
+
 export interface Vat {
   min: Place;
   max: Place;
   lid?: boolean;
-  motion?: {
-    type: 'slide';
-    axis?: Direction;
-    /** [m] */
-    stroke: number;
-    /** [s] */
-    period?: number;
-  };
+  motion?: Motion;
   walls?: {
     x_min?: Wall;
     x_max?: Wall;
@@ -327,6 +329,12 @@ export interface Body {
     into: Name;
     /** [s] */
     at: number;
+  };
+  motion?: Motion;
+  axle?: {
+    direction?: Direction;
+    /** [N m s] */
+    damping?: number;
   };
 }
 

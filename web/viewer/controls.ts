@@ -1,4 +1,10 @@
-import type { Event, SceneReference, SessionDescription } from '../client/index';
+import type {
+  Event,
+  Level,
+  SceneLevelsResult,
+  SceneReference,
+  SessionDescription,
+} from '../client/index';
 import { Builder } from './build/builder';
 import { ParameterForms } from './build/parameters/parameter_forms';
 import { Pour } from './build/pour';
@@ -11,6 +17,7 @@ import { Gravity } from './panel/gravity/gravity';
 import type { Keys } from './panel/keys';
 import { Playback } from './panel/playback';
 import { SceneFile } from './panel/scene_file';
+import { Levels } from './panel/levels';
 import { Scenes } from './panel/scenes';
 import { ReplayBar } from './replay/replay_bar';
 import { ask } from './panel/desk';
@@ -35,6 +42,10 @@ export class Controls {
   private readonly playback: Playback;
   private readonly gallery = new Gallery((scene) => this.load(scene));
   private readonly scenes = new Scenes(this.gallery, (scene) => this.load(scene));
+  private readonly levels = new Levels(
+    (scene) => this.askLevels(scene),
+    (scene, level) => this.load(scene, level),
+  );
   private readonly sceneFile: SceneFile;
   private readonly gravity: Gravity;
   private readonly deviceTilt: DeviceTilt;
@@ -45,6 +56,7 @@ export class Controls {
   private readonly parameters: ParameterForms;
   private readonly kept: Kept;
   private readonly replay: ReplayBar;
+  private described: SessionDescription | undefined;
   private isReplay = false;
   /** The session before the replay. */
   private live: string | undefined;
@@ -115,6 +127,8 @@ export class Controls {
     this.isReplay = description.replay !== undefined;
     if (!this.isReplay) this.live = description.session;
     this.scenes.describe(description);
+    this.described = description;
+    this.levels.describe(description);
     this.gravity.describe(description.gravity, isNew);
     this.pour.describe(description, isEarlier);
     this.builder.describe(description, isNew || isEarlier);
@@ -140,6 +154,7 @@ export class Controls {
     const isLive = isJoined && !this.isReplay;
     this.playback.enable(isJoined, isLive);
     this.scenes.enable(isLive);
+    this.levels.enable(isLive);
     this.gravity.enable(isLive);
     this.deviceTilt.enable(isLive);
     this.tools.enable(isLive);
@@ -166,8 +181,22 @@ export class Controls {
     this.replay.update();
   }
 
-  private load(scene: SceneReference): void {
-    void ask(this.desk, 'scene.load', { scene }).then((done) => done ?? this.scenes.refresh());
+  private load(scene: SceneReference, level?: Level): void {
+    const params = level === undefined ? { scene } : { scene, level };
+    void ask(this.desk, 'scene.load', params).then((done) => {
+      if (done) return;
+      this.scenes.refresh();
+      if (this.described) this.levels.describe(this.described);
+    });
+  }
+
+  /** Requests the levels of a scene; undefined for a scene outside the catalogue. */
+  private async askLevels(scene: string): Promise<SceneLevelsResult | undefined> {
+    try {
+      return await this.desk.request('scene.levels', { scene });
+    } catch {
+      return undefined; // a scene of a file, or an older server
+    }
   }
 
   private async listScenes(): Promise<void> {

@@ -44,7 +44,8 @@ void ContactSolve::set_geometry(const Configuration& predicted,
   rigid.resize(at.rigid.size());
   for (std::size_t b = 0; b < rigid.size(); ++b) {
     const RigidModel& body = model().rigid_bodies[b];
-    rigid[b] = rigid_motion(body, at.rigid[b], body.is_held(force_model.step));
+    const bool is_held = body.is_held(force_model.step) || body.axle;
+    rigid[b] = rigid_motion(body, at.rigid[b], is_held);
   }
   for (ContactConstraint& contact : constraints) {
     const ContactEnd& first = contact.ends[0];

@@ -136,6 +136,7 @@ void PressureResponse::sum_rigid_forces() {
       sum += force;
       torque += (at_.position[e] - center).cross(force);
     }
+    apply_axle(rigid, sum, torque);
     scratch_.rigid_force[b] = sum;
     scratch_.rigid_torque[b] = torque;
   }

@@ -44,6 +44,15 @@ void add_isa_option(CLI::App& command, InstructionSet& instructions) {
       ->check(CLI::Validator(check, "SET"));
 }
 
+void add_level_option(CLI::App& command, Level& level) {
+  const auto keep = [&level](const std::string& name) { level = *find_level(name); };
+  command
+      .add_option_function<std::string>(
+          "--level", keep,
+          "Level of detail: the same physics with fewer or more particles; default: normal")
+      ->check(CLI::IsMember({"coarse", "normal", "fine", "finest"}));
+}
+
 void add_device_option(CLI::App& command, DeviceChoice& device) {
   const auto check = [](const std::string& text) {
     const Result<DeviceChoice> choice = parse_device(text);

@@ -4,6 +4,7 @@
 
 #include "core/device/device_choice.h"
 #include "core/support/instruction_set.h"
+#include "protocol/scene/level.h"
 
 namespace vat {
 
@@ -16,6 +17,9 @@ CLI::Validator csv_file_name();
 /// Adds the option `--isa`: an instruction set of this machine. The default is the best instruction
 /// set.
 void add_isa_option(CLI::App& command, InstructionSet& instructions);
+
+/// Adds the option `--level`: a level of detail of the scene. The default is normal.
+void add_level_option(CLI::App& command, Level& level);
 
 /// Adds the option `--device`: the device that takes the steps. The default is the CPU.
 void add_device_option(CLI::App& command, DeviceChoice& device);

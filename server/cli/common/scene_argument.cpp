@@ -32,9 +32,7 @@ Error unknown_scene(const std::string& name, const std::vector<std::string>& kno
   return {"unknown_scene", name, message};
 }
 
-}  // namespace
-
-Result<Scene> load_scene(const std::string& argument, const std::string& scenes_folder) {
+Result<Scene> load_normal(const std::string& argument, const std::string& scenes_folder) {
   if (names_a_file(argument)) return load_file(argument);
   const Result<std::vector<std::string>> names = catalogue_names(scenes_folder);
   if (!names) return names.errors();
@@ -42,6 +40,14 @@ Result<Scene> load_scene(const std::string& argument, const std::string& scenes_
     return unknown_scene(argument, names.value());
   }
   return load_file(fs::path(scenes_folder) / (argument + ".json"));
+}
+
+}  // namespace
+
+Result<Scene> load_scene(const std::string& argument, const std::string& scenes_folder,
+                         Level level) {
+  Result<Scene> scene = load_normal(argument, scenes_folder);
+  return scene ? at_level(std::move(scene).value(), level) : std::move(scene);
 }
 
 Result<std::vector<std::string>> catalogue_names(const std::string& scenes_folder) {

@@ -42,6 +42,7 @@ Exit codes: 0 success, 1 invalid scene or failed run, 2 wrong usage, 128 + n int
 struct RecordOptions {
   std::string scene;
   std::string scenes_folder = VAT_DEFAULT_SCENES_DIR;
+  Level level = Level::normal;
   std::string output;
   Real until = kDefaultEnd;
   std::optional<Real> every;
@@ -73,7 +74,7 @@ void print_record(const RecordOptions& options, const RecordReport& report) {
 }
 
 int record(const RecordOptions& options) {
-  Result<Scene> loaded = load_scene(options.scene, options.scenes_folder);
+  Result<Scene> loaded = load_scene(options.scene, options.scenes_folder, options.level);
   if (!loaded) return fail(options.scene, loaded.errors());
   Scene& scene = loaded.value();
   resolve_accuracy(scene);
@@ -134,6 +135,7 @@ void add_record_command(CLI::App& app, int& exit_code) {
                    "Threads of one step; results do not depend on this number")
       ->check(CLI::Range(std::size_t{1}, kMaxRecordThreads))
       ->capture_default_str();
+  add_level_option(*command, options->level);
   add_isa_option(*command, options->instructions);
   command->add_flag("--resume", options->resume, "Continue an interrupted recording");
   command->footer(kRecordFooter);

@@ -77,6 +77,7 @@ std::map<std::string, StepControl> control_names() {
 struct SimulateOptions {
   std::string scene;
   std::string scenes_folder = VAT_DEFAULT_SCENES_DIR;
+  Level level = Level::normal;
   std::optional<Real> until;
   std::optional<Real> every;
   std::optional<Real> step;
@@ -201,7 +202,7 @@ void print_hash(const Simulation& simulation) {
 }
 
 Result<Scene> load_scene_for(const SimulateOptions& options, Schedule& schedule) {
-  Result<Scene> scene = load_scene(options.scene, options.scenes_folder);
+  Result<Scene> scene = load_scene(options.scene, options.scenes_folder, options.level);
   if (!scene) return scene;
   Numerics& numerics = scene.value().numerics;
   if (options.accuracy) {
@@ -289,6 +290,7 @@ void add_simulate_options(CLI::App& command, SimulateOptions& options) {
                   "Threads of one step; results do not depend on this number")
       ->check(CLI::Range(std::size_t{1}, kMaxThreads))
       ->capture_default_str();
+  add_level_option(command, options.level);
   add_isa_option(command, options.instructions);
   add_device_option(command, options.device);
   command

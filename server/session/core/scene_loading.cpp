@@ -22,16 +22,24 @@ Result<std::string> refuse_mesh_file(const std::string&) {
                "a mesh in a message must contain vertices and triangles, not the name of a file"};
 }
 
-std::variant<Scene, RpcError> read_client_scene(const Json& value, const Catalogue& catalogue) {
-  if (value.is_string()) {
+std::variant<Scene, RpcError> read_client_scene(const Json& value, const Catalogue& catalogue,
+                                                Level level) {
+  const bool is_named = value.is_string();
+  const Scene* named = nullptr;
+  if (is_named) {
     const auto& name = value.get_ref<const std::string&>();
-    const Scene* scene = catalogue.find(name);
-    if (scene == nullptr) return no_such_scene(name);
-    return *scene;
+    named = catalogue.find(name);
+    if (named == nullptr) return no_such_scene(name);
   }
-  Result<Scene> scene = read_scene(value, refuse_mesh_file);
+  Result<Scene> scene = is_named ? Result<Scene>(*named) : read_scene(value, refuse_mesh_file);
+  if (scene) scene = at_level(std::move(scene).value(), level);
   if (!scene) return scene_refused(scene.errors());
   return std::move(scene).value();
+}
+
+Level read_level(ObjectReader& params) {
+  return static_cast<Level>(
+      params.choice("level", kNamesOf<Level>, static_cast<std::size_t>(Level::normal)));
 }
 
 std::variant<Json, RpcError> find_saved_scene(const std::string& name,
@@ -44,14 +52,14 @@ std::variant<Json, RpcError> find_saved_scene(const std::string& name,
   return std::move(json).value();
 }
 
-std::variant<Scene, RpcError> read_named_scene(const Json& value,
+std::variant<Scene, RpcError> read_named_scene(const Json& value, Level level,
                                                const SessionEnvironment& environment) {
   if (!value.is_string() || environment.catalogue.find(value.get_ref<const std::string&>())) {
-    return read_client_scene(value, environment.catalogue);
+    return read_client_scene(value, environment.catalogue, level);
   }
   auto saved = find_saved_scene(value.get_ref<const std::string&>(), environment);
   if (auto* error = std::get_if<RpcError>(&saved)) return std::move(*error);
-  return read_client_scene(std::get<Json>(saved), environment.catalogue);
+  return read_client_scene(std::get<Json>(saved), environment.catalogue, level);
 }
 
 std::optional<RpcError> find_excess(const Simulation& simulation, const ServerLimits& limits) {

@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "core/simulation/simulation.h"
+#include "protocol/scene/level.h"
 #include "server/messages/rpc_message.h"
 #include "server/session/core/session_environment.h"
 #include "server/support/resource_budget.h"
@@ -19,17 +20,20 @@ inline constexpr std::string_view kLoadStateMethod = "session.load";
 /// Returns an error for every file, because scenes and bodies from clients contain their meshes.
 Result<std::string> refuse_mesh_file(const std::string& name);
 
-/// Returns a scene, given by its catalogue name or as JSON. Paths of errors begin with the
-/// parameter `scene`.
-std::variant<Scene, RpcError> read_client_scene(const Json& value, const Catalogue& catalogue);
+/// Returns a scene, given by its catalogue name or as JSON, at a level of detail. Paths of errors
+/// begin with the parameter `scene`.
+std::variant<Scene, RpcError> read_client_scene(const Json& value, const Catalogue& catalogue,
+                                                Level level = Level::normal);
 
 /// Returns the saved scene with this name, or an error.
 std::variant<Json, RpcError> find_saved_scene(const std::string& name,
                                               const SessionEnvironment& environment);
-/// Returns a scene, given by JSON or by its name in the catalogue or among the saved scenes. Paths
-/// of errors begin with the parameter `scene`.
-std::variant<Scene, RpcError> read_named_scene(const Json& value,
+/// Returns a scene at a level of detail, given by JSON or by its name in the catalogue or among the
+/// saved scenes. Paths of errors begin with the parameter `scene`.
+std::variant<Scene, RpcError> read_named_scene(const Json& value, Level level,
                                                const SessionEnvironment& environment);
+/// Returns the optional parameter `level` of a method that loads a scene.
+Level read_level(ObjectReader& params);
 
 /// Returns an error if the simulation exceeds a limit of one session.
 std::optional<RpcError> find_excess(const Simulation& simulation, const ServerLimits& limits);

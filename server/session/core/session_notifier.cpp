@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "core/support/check.h"
+#include "protocol/scene/level.h"
 #include "server/frames/frame_domain.h"
 #include "server/messages/describe.h"
 #include "server/session/core/playback.h"
@@ -169,7 +170,8 @@ Json SessionNotifier::describe_session() const {
       {"epoch", run_.epoch()},
       {"tick", run_.tick()},
       {"name", context_.settings.name},
-      {"scene", scene.name},
+      {"scene", split_level(scene.name).scene},
+      {"level", to_string(split_level(scene.name).level)},
       {"title", scene.title},
       {"playing", clock_.playing()},
       {"speed", clock_.speed()},
@@ -189,7 +191,7 @@ Json SessionNotifier::describe_session() const {
 SessionSummary SessionNotifier::summary() {
   if (people_ == nullptr || people_changes_ != participants_.changes()) list_people();
   return {context_.settings.name,
-          run_.simulation().scene().name,
+          std::string(split_level(run_.simulation().scene().name).scene),
           participants_.connected(),
           clock_.playing(),
           run_.tick(),

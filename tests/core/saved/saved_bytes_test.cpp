@@ -48,26 +48,32 @@ TEST(SavedBytes, WithMoreAfterThemAreRefused) {
 
 TEST(SavedBytes, OfAnotherVersionAreRefused) {
   std::vector<std::uint8_t> bytes = make_bytes();
-  for (const std::uint32_t version : {0U, 3U}) {
+  for (const std::uint32_t version : {0U, 4U}) {
     store<std::uint32_t>(bytes, kSealVersionAt, version);
     EXPECT_EQ(code_of(bytes), "other_version");
   }
 }
 
-// Version 1 has no motion of the vat at its end unless a user moved it, and no appearances.
-TEST(SavedBytes, OfVersionOneAreRead) {
+// Version 2 has no motions and axles of bodies. Version 1 also has no motion of the vat at its end
+// unless a user moved it, and no appearances.
+TEST(SavedBytes, OfEarlierVersionsAreRead) {
   const Simulation simulation = make_simulation(make_shaken_vat(IntegratorId::velocity_verlet));
   std::vector<std::uint8_t> bytes = simulation.snapshot().to_bytes();
-  const std::size_t members = 6;  // each absent member is one byte
-  const std::size_t end = 1 + sizeof(std::uint32_t) + members * simulation.scene().materials.size();
-  bytes.resize(bytes.size() - end);
-  store<std::uint32_t>(bytes, kSealVersionAt, 1);
-  close_seal(bytes);
-  const Result<Simulation> loaded = Simulation::load(bytes);
-  ASSERT_TRUE(loaded.ok()) << loaded.errors()[0].message;
-  EXPECT_EQ(loaded.value().state_hash(), simulation.state_hash());
-  store<std::uint32_t>(bytes, kSealVersionAt, 2);
-  EXPECT_EQ(code_of(bytes), "bad_value");
+  const auto cut = [&](std::size_t size, std::uint32_t version) {
+    bytes.resize(bytes.size() - size);
+    store<std::uint32_t>(bytes, kSealVersionAt, version);
+    close_seal(bytes);
+    const Result<Simulation> loaded = Simulation::load(bytes);
+    ASSERT_TRUE(loaded.ok()) << loaded.errors()[0].message;
+    EXPECT_EQ(loaded.value().state_hash(), simulation.state_hash());
+    store<std::uint32_t>(bytes, kSealVersionAt, version + 1);
+    EXPECT_EQ(code_of(bytes), "bad_value");
+  };
+  // Each absent member is one byte, and each list begins with its length.
+  const std::size_t guidance = 2;
+  cut(sizeof(std::uint32_t) + guidance * simulation.scene().bodies.size(), 2);
+  const std::size_t appearance = 6;
+  cut(1 + sizeof(std::uint32_t) + appearance * simulation.scene().materials.size(), 1);
 }
 
 TEST(SavedBytes, OfAnotherInstructionSetAreRefused) {

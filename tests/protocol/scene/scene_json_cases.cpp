@@ -92,7 +92,8 @@ const char* const kFullDocument = R"json({
      "shape": {"type": "mesh", "source": "by hand",
                "vertices": [[0, 0, 0], [0.5, 0, 0], [0, 0.5, 0], [0, 0, 0.5]],
                "triangles": [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]},
-     "position": [2, 0.75, 1]},
+     "position": [2, 0.75, 1], "angular_velocity": [2, 0, 1],
+     "axle": {"direction": [4, 0, 2], "damping": 0.375}},
     {"name": "pair", "kind": "deformable", "material": "rubber", "spacing": 0.05,
      "shape": {"type": "particles",
                "positions": [[0, 0, 0], [0.1, 0, 0], [0.2, 0, 0]],
@@ -102,7 +103,10 @@ const char* const kFullDocument = R"json({
                "fixed": [0]},
      "springs": [{"particles": [0, 1], "stiffness": 100.5, "damping": 0.125, "rest_length": 0.2},
                  {"particles": [2, 1], "stiffness": 50.5}],
-     "position": [0, 1, 2]}
+     "position": [0, 1, 2]},
+    {"name": "piston", "kind": "rigid", "material": "wood", "spacing": 0.05,
+     "shape": {"type": "sphere", "radius": 0.125}, "position": [-1, 1, 0.5],
+     "motion": {"type": "slide", "axis": [1, 0, 2], "stroke": -0.25, "period": 4.5}}
   ]
 })json";
 
@@ -155,7 +159,9 @@ std::vector<BodyDescription> full_bodies() {
            0.04, {-1, -0.75, 1.5}),
       body("wedge", BodyKind::rigid, "wood", tetrahedron("meshes/wedge.obj"), 0.05, {2, 0, 1}),
       body("tetra", BodyKind::rigid, "wood", tetrahedron("by hand"), 0.05, {2, 0.75, 1}),
-      body("pair", BodyKind::deformable, "rubber", full_particles(), 0.05, {0, 1, 2})};
+      body("pair", BodyKind::deformable, "rubber", full_particles(), 0.05, {0, 1, 2}),
+      body("piston", BodyKind::rigid, "wood", SphereShape{Vec3::Zero(), 0.125}, 0.05,
+           {-1, 1, 0.5})};
   bodies[0].radius = 0.03;
   bodies[0].orientation = Quat(0.5, 0.5, 0.5, 0.5);
   bodies[0].velocity = {0.1, 0.2, 0.3};
@@ -172,6 +178,9 @@ std::vector<BodyDescription> full_bodies() {
   bodies[1].release = 0.75;
   bodies[2].melting = Melting{"water", 1.25};
   bodies[3].fixed = true;
+  bodies[4].angular_velocity = {2, 0, 1};
+  bodies[4].axle = Axle{{4, 0, 2}, 0.375};
+  bodies[6].motion = SlideMotion{{1, 0, 2}, -0.25, 4.5};
   bodies[5].springs = {{0, 1, {100.5, 0.125}, 0.2}, {2, 1, {50.5, 0}, {}}};
   return bodies;
 }
@@ -247,6 +256,7 @@ std::vector<std::uint8_t> bits_of(const Scene& scene) {
   SavingArchive archive(bytes);
   archive(scene);
   for (const Material& material : scene.materials) archive(material.appearance);
+  for (const BodyDescription& body : scene.bodies) archive(body.motion, body.axle);
   return bytes;
 }
 

@@ -50,6 +50,7 @@ TEST(SceneJson, SavedBytesHoldEveryMember) {
   Scene loaded;
   archive(loaded);
   for (Material& material : loaded.materials) archive(material.appearance);
+  for (BodyDescription& body : loaded.bodies) archive(body.motion, body.axle);
   EXPECT_FALSE(archive.failed());
   EXPECT_EQ(write_scene(loaded), write_scene(full_scene()));
 }
@@ -57,7 +58,7 @@ TEST(SceneJson, SavedBytesHoldEveryMember) {
 TEST(SceneJson, TheFullSceneRuns) {
   const Result<Simulation> simulation = Simulation::create(full_scene());
   ASSERT_EQ(lines(simulation), "");
-  EXPECT_EQ(simulation.value().bodies().size(), 6U);
+  EXPECT_EQ(simulation.value().bodies().size(), 7U);
 }
 
 TEST(SceneJson, OnlyThreeMembersAreNeeded) {
@@ -122,8 +123,9 @@ constexpr const char* kRequired = R"(
   /materials/0/liquid/support_radius /materials/1/springs/structural/stiffness
   /materials/1/springs/shear/stiffness /materials/1/springs/bend/stiffness
   /materials/1/self_contact/stiffness /materials/1/plasticity/yield_strain
-  /bodies/N/name(012345) /bodies/N/kind(012345) /bodies/N/material(012345)
-  /bodies/N/shape(012345) /bodies/N/shape/type(012345) /bodies/N/spacing(01234)
+  /bodies/N/name(0123456) /bodies/N/kind(0123456) /bodies/N/material(0123456)
+  /bodies/N/shape(0123456) /bodies/N/shape/type(0123456) /bodies/N/spacing(012346)
+  /bodies/6/shape/radius /bodies/6/motion/type /bodies/6/motion/stroke
   /bodies/0/velocity_field/waves/N/amplitude(01) /bodies/0/velocity_field/waves/N/wave_vector(01)
   /bodies/0/displacement_field/waves/0/amplitude /bodies/0/displacement_field/waves/0/wave_vector
   /bodies/0/shape/size /bodies/1/shape/radius /bodies/2/shape/radius /bodies/2/shape/height

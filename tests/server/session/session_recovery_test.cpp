@@ -73,6 +73,26 @@ TEST_F(SessionRecoveryTest, AResetGoesToTheSceneAndOnFromThere) {
   EXPECT_EQ(life->hash(), later);
 }
 
+// The log contains the scene at its normal level, and the level.
+TEST_F(SessionRecoveryTest, ALoadedSceneKeepsItsLevel) {
+  const Json scene = Json::parse(R"({"format": "vat.scene/1", "name": "block",
+      "materials": [{"name": "wood"}],
+      "bodies": [{"name": "block", "kind": "rigid", "material": "wood", "spacing": 0.1,
+                  "shape": {"type": "box", "size": [0.6, 0.6, 0.6]}}]})");
+  begin();
+  client().result("control.pause");
+  client().result("scene.load", {{"scene", scene}, {"level", "coarse"}});
+  client().result("control.step", {{"ticks", 3}});
+  const std::string before = life->hash();
+  crash();
+  EXPECT_EQ(life->hash(), before);
+  client().result("control.reset");
+  const Json described = client().result("session.join").at("description");
+  EXPECT_EQ(described.at("scene"), "block");
+  EXPECT_EQ(described.at("level"), "coarse");
+  EXPECT_EQ(described.at("bodies").at(0).at("particles"), 64);
+}
+
 TEST_F(SessionRecoveryTest, GrabsEndWhereNobodyResumesThem) {
   ServerLimits impatient;
   impatient.resume_time = 0ms;

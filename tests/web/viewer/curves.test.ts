@@ -1,6 +1,7 @@
 import { describe, expect, it } from 'vitest';
 import type { SessionStats } from '../../../web/client/index';
 import { History } from '../../../web/viewer/curves/history';
+import { diagnosticSeries, kCharts } from '../../../web/viewer/curves/series';
 import { profileBetween, profileInWords } from '../../../web/viewer/curves/stage_words';
 
 function stats(ticks: number, seconds: number, stages: Record<string, number>): SessionStats {
@@ -90,5 +91,32 @@ describe('History', () => {
     expect(times[0]).toBe(0);
     expect(times.slice(-100)).toEqual(Array.from({ length: 100 }, (_, n) => 4900 + n));
     expect(values).toEqual(times);
+  });
+});
+
+describe('diagnosticSeries', () => {
+  const diagnostics = {
+    kinetic_energy: 1,
+    gravitational_energy: 2,
+    elastic_energy: 3,
+    contact_energy: 4,
+    momentum: [3, 0, 4] as [number, number, number],
+    angular_momentum: [0, 0, 0] as [number, number, number],
+    mean_density_error: 5,
+    max_density_error: 6,
+    torn_springs: 0,
+    emitted_particles: 0,
+    drained_particles: 0,
+  };
+
+  it('has a torque in scenes with axles only', () => {
+    expect(diagnosticSeries(diagnostics)).toMatchObject({ kinetic: 1, momentum: 5, densest: 6 });
+    expect(diagnosticSeries(diagnostics)).not.toHaveProperty('torque');
+    expect(diagnosticSeries({ ...diagnostics, axle_torque: -2 })).toHaveProperty('torque', -2);
+  });
+
+  it('hides the chart of the torque while it has no values', () => {
+    const special = kCharts.filter(({ isSpecial }) => isSpecial).map(({ title }) => title);
+    expect(special).toEqual(['Torque on axles']);
   });
 });

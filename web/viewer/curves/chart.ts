@@ -33,13 +33,14 @@ export class Chart {
   }
 
   show(history: History<SeriesName>): void {
-    const { series, format, title } = this.plan;
+    const { series, format, title, isSpecial } = this.plan;
     this.plot.setData(history.columns(series.map(({ name }) => name)));
     const values = series.flatMap(({ name, label }) => {
       const value = history.newest(name);
       if (value === undefined) return [];
       return [series.length > 1 ? `${label} ${format(value)}` : format(value)];
     });
+    this.element.hidden = isSpecial === true && values.length === 0;
     this.newest.value = series.length > 1 ? '' : (values[0] ?? '–');
     this.place.ariaLabel = `${title} over simulated time; now ${values.join(', ') || 'unknown'}`;
     this.place.dataset.samples = String(this.plot.data[0].length);

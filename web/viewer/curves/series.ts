@@ -9,6 +9,7 @@ export type SeriesName =
   | 'elastic'
   | 'contact'
   | 'momentum'
+  | 'torque'
   | 'density'
   | 'densest'
   | 'rate'
@@ -21,6 +22,8 @@ export interface ChartPlan {
   explanation: string;
   series: readonly { name: SeriesName; label: string; colour: string }[];
   format(value: number): string;
+  /** Whether the chart is hidden while it has no values. */
+  isSpecial?: boolean;
 }
 
 export const kCharts: readonly ChartPlan[] = [
@@ -41,6 +44,13 @@ export const kCharts: readonly ChartPlan[] = [
     explanation: 'Magnitude of the sum over all bodies.',
     series: [{ name: 'momentum', label: 'momentum', colour: '#a86cc9' }],
     format: (value) => `${formatQuantity(value)} kg m/s`,
+  },
+  {
+    title: 'Torque on axles',
+    explanation: 'Sum of the torques of liquids, walls and other bodies, without brakes.',
+    series: [{ name: 'torque', label: 'torque', colour: '#c9a13c' }],
+    format: (value) => `${formatQuantity(value)} N m`,
+    isSpecial: true,
   },
   {
     title: 'Density error of liquids',
@@ -82,6 +92,7 @@ export function diagnosticSeries({
   elastic_energy: elastic,
   contact_energy: contact,
   momentum,
+  axle_torque: torque,
   mean_density_error: density,
   max_density_error: densest,
 }: Diagnostics): Partial<Record<SeriesName, number>> {
@@ -91,6 +102,7 @@ export function diagnosticSeries({
     elastic,
     contact,
     momentum: Math.hypot(...momentum),
+    ...(torque !== undefined && { torque }),
     density,
     densest,
   };

@@ -1,0 +1,71 @@
+// scene.levels
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/limits.h"
+#include "core/numerics/choose_numerics.h"
+#include "core/sampling/nozzle.h"
+#include "core/validation/validate.h"
+#include "server/methods/handlers.h"
+
+namespace vat {
+namespace {
+
+/// The least real-time factor of an offered level.
+constexpr Real kMargin = 1.25;
+
+std::size_t count_particles(const Scene& scene) {
+  std::size_t count = 0;
+  const std::vector<SampledBody> samples = sample_bodies(scene);
+  for (std::size_t b = 0; b < samples.size(); ++b) {
+    count += std::max(samples[b].positions.size(), most_particles(scene, scene.bodies[b]));
+  }
+  return count;
+}
+
+/// Returns whether the server accepts so many particles of a scene.
+bool is_allowed(const Scene& scene, std::size_t particles, const ServerLimits& limits) {
+  const auto steps =
+      static_cast<std::size_t>(std::lround(scene.numerics.tick / scene.numerics.step));
+  return particles <= limits.max_particles &&
+         particles * steps <= limits.max_particle_steps_per_tick;
+}
+
+/// Returns the levels of a scene, and the finest one that is faster than real time by the margin.
+RpcResult list_levels(const ServerResources& resources, const std::string& name) {
+  const Scene* const normal = resources.catalogue.find(name);
+  if (normal == nullptr) return no_such_scene(name);
+  const ServerLimits& limits = resources.settings.limits;
+  Json levels = Json::array();
+  const char* offered = nullptr;
+  for (std::size_t index = 0; index < kLevelCount; ++index) {
+    const auto level = static_cast<Level>(index);
+    Result<Scene> scaled = at_level(*normal, level);
+    if (!scaled || !find_errors(scaled.value()).empty()) continue;
+    Scene& scene = scaled.value();
+    resolve_accuracy(scene);
+    const std::size_t particles = count_particles(scene);
+    if (!is_allowed(scene, particles, limits)) continue;
+    const Real factor = resources.speed.real_time_factor(scene, &resources.environment.runner,
+                                                         resources.settings.instructions);
+    levels.push_back(
+        {{"level", to_string(level)}, {"particles", particles}, {"real_time_factor", factor}});
+    if (offered == nullptr || factor >= kMargin) offered = to_string(level);
+  }
+  if (offered == nullptr) return limit_reached("particles", limits.max_particles);
+  return Json{{"levels", std::move(levels)}, {"offered", offered}};
+}
+
+}  // namespace
+
+ServerAction read_scene_levels(ObjectReader& params, Errors&) {
+  const std::string name = params.text("scene", kMaxNameLength);
+  return [name](SessionDirectory& directory, PendingReply& reply) -> std::optional<RpcResult> {
+    directory.use_storage(
+        reply, [&resources = directory.resources(), name] { return list_levels(resources, name); });
+    return {};
+  };
+}
+
+}  // namespace vat
