@@ -45,10 +45,11 @@ void gather_rigid_forces(StepContext& c) {
         torque += c.forces.friction_torque[e];
       }
     }
-    apply_axle(rigid, force, torque);
     const bool is_held = rigid.is_held(c.step);
     c.forces.rigid_force[b] = is_held ? Vec3(Vec3::Zero()) : force;
     c.forces.rigid_torque[b] = is_held ? Vec3(Vec3::Zero()) : torque;
+    // Not before, because a reference to the sums would keep them in memory during the loops.
+    apply_axle(rigid, c.forces.rigid_force[b], c.forces.rigid_torque[b]);
   }
 }
 

@@ -136,9 +136,9 @@ void PressureResponse::sum_rigid_forces() {
       sum += force;
       torque += (at_.position[e] - center).cross(force);
     }
-    apply_axle(rigid, sum, torque);
     scratch_.rigid_force[b] = sum;
     scratch_.rigid_torque[b] = torque;
+    apply_axle(rigid, scratch_.rigid_force[b], scratch_.rigid_torque[b]);
   }
 }
 

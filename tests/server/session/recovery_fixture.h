@@ -76,8 +76,8 @@ class SessionRecoveryTest : public testing::Test {
   }
   void begin() { life.emplace(catalogue, data, clock, ServerLimits{}, storage); }
   TestClient& client() { return *life->client; }
-  void execute(const char* sql, const char* file = "/vat.db") {
-    Database(data + file, Database::Mode::create).execute(sql);
+  void execute(const std::string& sql, const char* file = "/vat.db") {
+    Database(data + file, Database::Mode::create).execute(sql.c_str());
   }
 
   const TemporaryFolder folder;
