@@ -30,7 +30,7 @@ fail() {
 
 clean_up() {
   [[ -z $server ]] || kill "$server" 2>/dev/null || true
-  for place in dev/shm dev/pts proc; do
+  for place in dev/shm dev/pts sys proc; do
     ! mountpoint -q "$machine/$place" || umount -l "$machine/$place"
   done
   rm -rf --one-file-system "$work"
@@ -45,6 +45,7 @@ make_machine() {
   fi
   # The machine has separate devices, so that faults in it cannot affect the devices of this machine.
   mount -t proc proc "$machine/proc"
+  mount -t sysfs -o ro sysfs "$machine/sys" # OpenCL reads the topology of the processors
   mount -t devpts devpts "$machine/dev/pts"
   mount -t tmpfs tmpfs "$machine/dev/shm"
 }

@@ -128,6 +128,10 @@ export class Viewer {
 
   /** Returns a picture of the canvas after two successive pictures are equal. */
   async stillPicture(): Promise<string> {
+    // A moving picture can have a lower resolution.
+    await this.page.waitForFunction(
+      () => !(Number(document.querySelector('canvas')?.dataset.scale) < 1),
+    );
     for (let last = ''; ;) {
       const picture = await this.picture();
       if (picture === last) return picture;

@@ -314,6 +314,7 @@ export class Stage {
   private setScale(scale: number): void {
     if (scale === this.scale) return;
     this.scale = scale;
+    this.canvas.dataset.scale = String(scale);
     this.renderer.setPixelRatio(scale * fullRatio());
   }
 
