@@ -1,4 +1,3 @@
-
 #include "core/scene/material_members.h"
 #include "protocol/scene/appearance.h"
 #include "protocol/scene/scene_json.h"

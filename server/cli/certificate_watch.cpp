@@ -1,11 +1,12 @@
 #include "server/cli/certificate_watch.h"
-#include "server/support/log.h"
 
 #include <sys/stat.h>
 
 #include <csignal>
 #include <exception>
 #include <utility>
+
+#include "server/support/log.h"
 
 namespace vat {
 namespace {

@@ -21,7 +21,7 @@ export class CameraMotion {
   private flight: Flight | undefined;
   private followed: number | undefined;
   private chase = new Chase(false);
-  /** Whether the camera orbits while nobody operates the page. */
+  /** Whether the camera orbits the scene if the user gives no input. */
   orbits = true;
 
   /** `isCalm` returns whether the user prefers reduced motion. */

@@ -12,7 +12,7 @@ const kPauseSeconds = 0.5;
 
 const kInputs = ['pointerdown', 'pointermove', 'wheel', 'keydown', 'touchstart'] as const;
 
-/** The slow orbit of the camera while nobody operates the page. */
+/** Slow orbit of the camera, which starts if the user gives no input. */
 export class IdleOrbit {
   private inputAt: number;
   private drawnAt = -Infinity;

@@ -53,7 +53,7 @@ export interface Pushed {
   radius: number;
 }
 
-/** Sends pushes: forces that give a body a velocity, whatever its mass. */
+/** Sends forces that give a body a velocity. The force is proportional to the mass of the body. */
 export class Pusher {
   /** `bodyOf` returns undefined for removed bodies; `height` returns the scene's height [m]. */
   constructor(

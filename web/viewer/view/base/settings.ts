@@ -17,7 +17,7 @@ export const kChoices = {
   clip: ['off', 'x', 'y', 'z'],
   /** Interpolation between frames; `auto`: unless the CPU draws. */
   smooth: ['auto', 'on', 'off'],
-  /** The slow orbit of the camera while nobody operates the page. */
+  /** Whether the camera orbits the scene slowly if the user gives no input. */
   orbit: ['on', 'off'],
 } as const;
 
