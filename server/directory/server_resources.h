@@ -2,10 +2,13 @@
 
 #include <boost/asio/strand.hpp>
 #include <boost/asio/thread_pool.hpp>
+#include <map>
 #include <memory>
+#include <string>
 
 #include "server/directory/server_settings.h"
 #include "server/http/downloads.h"
+#include "server/messages/rpc_message.h"
 #include "server/operations/machine_speed.h"
 #include "server/replay/imports.h"
 #include "server/session/core/session_environment.h"
@@ -62,6 +65,8 @@ struct ServerResources {
   /// Strand of `storage_threads` for requests to the server that use the storage.
   boost::asio::strand<boost::asio::thread_pool::executor_type> storage_requests;
   mutable MachineSpeed speed;
+  /// Results of scene.levels by scene of the catalogue. Only for use on `storage_requests`.
+  mutable std::map<std::string, RpcResult> levels;
 
   SavedScenes& saved_scenes() const { return *environment.scenes; }
 };

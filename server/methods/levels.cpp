@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <variant>
 
 #include "core/limits.h"
 #include "core/numerics/choose_numerics.h"
@@ -33,7 +34,7 @@ bool is_allowed(const Scene& scene, std::size_t particles, const ServerLimits& l
 }
 
 /// Returns the levels of a scene, and the finest one that is faster than real time by the margin.
-RpcResult list_levels(const ServerResources& resources, const std::string& name) {
+RpcResult compute_levels(const ServerResources& resources, const std::string& name) {
   const Scene* const normal = resources.catalogue.find(name);
   if (normal == nullptr) return no_such_scene(name);
   const ServerLimits& limits = resources.settings.limits;
@@ -55,6 +56,16 @@ RpcResult list_levels(const ServerResources& resources, const std::string& name)
   }
   if (offered == nullptr) return limit_reached("particles", limits.max_particles);
   return Json{{"levels", std::move(levels)}, {"offered", offered}};
+}
+
+/// Samples each level only once, because other requests wait for it.
+RpcResult list_levels(const ServerResources& resources, const std::string& name) {
+  const auto known = resources.levels.find(name);
+  if (known != resources.levels.end()) return known->second;
+  RpcResult result = compute_levels(resources, name);
+  // Names of other scenes would let the table grow.
+  if (std::holds_alternative<Json>(result)) resources.levels.emplace(name, result);
+  return result;
 }
 
 }  // namespace

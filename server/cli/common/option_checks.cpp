@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "server/output/text.h"
 
@@ -50,7 +51,8 @@ void add_level_option(CLI::App& command, Level& level) {
       .add_option_function<std::string>(
           "--level", keep,
           "Level of detail: the same physics with fewer or more particles; default: normal")
-      ->check(CLI::IsMember({"coarse", "normal", "fine", "finest"}));
+      ->check(
+          CLI::IsMember(std::vector<std::string>(kNamesOf<Level>.begin(), kNamesOf<Level>.end())));
 }
 
 void add_device_option(CLI::App& command, DeviceChoice& device) {
