@@ -125,6 +125,12 @@ void set_inertia(RigidModel& rigid, const Mat3& inertia) {
   rigid.splitting = w[0] - w[1] < w[1] - w[2] ? std::array{0, 1, 2} : std::array{1, 2, 0};
 }
 
+/// Returns the least rotation of the x axis to a unit vector, whose x is not negative.
+Quat rotation_of_x(const Vec3& to) {
+  const Real scale = std::sqrt(2 * (1 + to.x()));
+  return Quat(scale / 2, 0, -to.z() / scale, to.y() / scale);
+}
+
 /// Leaves only rotations about the axle free. In the plane, there are no others.
 void set_axle(RigidModel& rigid, const Axle& axle, const Mat3& to_body, bool is_plane) {
   const Vec3 direction = axle.direction.normalized();
@@ -134,7 +140,7 @@ void set_axle(RigidModel& rigid, const Axle& axle, const Mat3& to_body, bool is_
   const Vec3 own = to_body * direction;
   const Real moment = own.dot(rigid.inertia * own);
   rigid.inverse_inertia = own * own.transpose() / moment;
-  rigid.principal_axes = Quat::FromTwoVectors(Vec3::UnitX(), own);
+  rigid.principal_axes = rotation_of_x(own.x() < 0 ? Vec3(-own) : own);
   rigid.inverse_moments = {1 / moment, 0, 0};
   rigid.splitting = {1, 2, 0};
 }

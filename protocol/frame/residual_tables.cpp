@@ -23,7 +23,7 @@ constexpr std::array<int, kTables> kRadius{2, 2, 2, 2, 2, 2, 2, 3,  3,  3,  3,  
 constexpr std::array<std::int32_t, kPlaces> kMiddle{1, 3};  // [eighths]
 
 /// Returns the cumulative distribution, of 65536, at `eighths` of a distribution centred at zero.
-constexpr std::int32_t part_below(std::int32_t eighths, std::int32_t steepness) {
+std::int32_t part_below(std::int32_t eighths, std::int32_t steepness) {
   const std::int32_t steps = (eighths < 0 ? -eighths : eighths) * steepness;
   const auto index = static_cast<std::size_t>(std::min(steps >> 8, 80));
   const std::int32_t rest = (kLogistic[index + 1] - kLogistic[index]) * (steps & 255) >> 8;
@@ -31,7 +31,7 @@ constexpr std::int32_t part_below(std::int32_t eighths, std::int32_t steepness) 
   return eighths < 0 ? 65536 - part : part;
 }
 
-constexpr void fill_table(std::size_t table, std::size_t place, std::size_t index, Tables& all) {
+void fill_table(std::size_t table, std::size_t place, std::size_t index, Tables& all) {
   const int radius = kRadius[table];
   const int symbols = 2 * radius + 2;
   const auto below = [&](int residual) {
@@ -54,7 +54,7 @@ constexpr void fill_table(std::size_t table, std::size_t place, std::size_t inde
   }
 }
 
-constexpr Tables make_tables() noexcept {
+Tables make_tables() noexcept {
   Tables all;
   for (std::uint32_t table = 0; table < kTables; ++table) {
     for (std::uint32_t place = 0; place < kPlaces; ++place) {
