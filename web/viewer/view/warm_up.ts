@@ -15,6 +15,8 @@ export class WarmUp {
   private readonly known = new Set<Material>();
   private readonly pending = new Set<Material>();
   private readonly programs = new Set<Program>();
+  /** Passed when the graphics has executed all compilations. */
+  private fence: WebGLSync | null = null;
 
   constructor(
     private readonly renderer: WebGLRenderer,
@@ -27,6 +29,8 @@ export class WarmUp {
    */
   advance(camera: Camera, targetOf: (mesh: Object3D) => WebGLRenderTarget | null): boolean {
     const { renderer, scene, known, pending } = this;
+    const gl = renderer.getContext() as WebGL2RenderingContext;
+    const before = pending.size;
     scene.traverseVisible((object) => {
       const { material, isMesh } = object as Mesh;
       if (!isMesh || Array.isArray(material) || known.has(material)) return;
@@ -36,7 +40,14 @@ export class WarmUp {
       renderer.compile(object, camera, scene);
     });
     renderer.setRenderTarget(null);
-    if (renderer.getContext().isContextLost()) return true;
+    if (gl.isContextLost()) return true;
+    if (pending.size > before) {
+      gl.deleteSync(this.fence);
+      this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+      gl.flush();
+    }
+    // Without KHR_parallel_shader_compile, every program is always "ready".
+    if (this.fence && gl.getSyncParameter(this.fence, gl.SYNC_STATUS) !== gl.SIGNALED) return false;
     for (const material of pending) {
       const { currentProgram } = renderer.properties.get(material) as { currentProgram?: Program };
       if (currentProgram?.isReady() === false) continue;
