@@ -9,7 +9,6 @@
 #include "server/directory/server_settings.h"
 #include "server/http/downloads.h"
 #include "server/messages/rpc_message.h"
-#include "server/operations/machine_speed.h"
 #include "server/replay/imports.h"
 #include "server/session/core/session_environment.h"
 #include "server/session/ticks/slow_tick_gate.h"
@@ -64,7 +63,6 @@ struct ServerResources {
   boost::asio::strand<boost::asio::thread_pool::executor_type> creations;
   /// Strand of `storage_threads` for requests to the server that use the storage.
   boost::asio::strand<boost::asio::thread_pool::executor_type> storage_requests;
-  mutable MachineSpeed speed;
   /// Results of scene.levels by scene of the catalogue. Only for use on `storage_requests`.
   mutable std::map<std::string, RpcResult> levels;
 

@@ -9,6 +9,7 @@
 #include "core/sampling/nozzle.h"
 #include "core/validation/validate.h"
 #include "server/methods/handlers.h"
+#include "server/operations/scene_speed.h"
 
 namespace vat {
 namespace {
@@ -33,32 +34,52 @@ bool is_allowed(const Scene& scene, std::size_t particles, const ServerLimits& l
          particles * steps <= limits.max_particle_steps_per_tick;
 }
 
-/// Returns the levels of a scene, and the finest one that is faster than real time by the margin.
-RpcResult compute_levels(const ServerResources& resources, const std::string& name) {
-  const Scene* const normal = resources.catalogue.find(name);
-  if (normal == nullptr) return no_such_scene(name);
-  const ServerLimits& limits = resources.settings.limits;
-  Json levels = Json::array();
-  const char* offered = nullptr;
+/// The levels of a scene that the server accepts.
+struct Levels {
+  std::vector<Level> levels;
+  std::vector<Scene> scenes;
+  std::vector<std::size_t> particles;
+};
+
+Levels accepted_levels(const Scene& normal, const ServerLimits& limits) {
+  Levels accepted;
   for (std::size_t index = 0; index < kLevelCount; ++index) {
     const auto level = static_cast<Level>(index);
-    Result<Scene> scaled = at_level(*normal, level);
+    Result<Scene> scaled = at_level(normal, level);
     if (!scaled || !find_errors(scaled.value()).empty()) continue;
     Scene& scene = scaled.value();
     resolve_accuracy(scene);
     const std::size_t particles = count_particles(scene);
     if (!is_allowed(scene, particles, limits)) continue;
-    const Real factor = resources.speed.real_time_factor(scene, &resources.environment.runner,
-                                                         resources.settings.instructions);
-    levels.push_back(
-        {{"level", to_string(level)}, {"particles", particles}, {"real_time_factor", factor}});
-    if (offered == nullptr || factor >= kMargin) offered = to_string(level);
+    accepted.levels.push_back(level);
+    accepted.scenes.push_back(std::move(scene));
+    accepted.particles.push_back(particles);
   }
-  if (offered == nullptr) return limit_reached("particles", limits.max_particles);
+  return accepted;
+}
+
+/// Returns the levels of a scene, and the finest one that is faster than real time by the margin.
+RpcResult compute_levels(const ServerResources& resources, const std::string& name) {
+  const Scene* const normal = resources.catalogue.find(name);
+  if (normal == nullptr) return no_such_scene(name);
+  const ServerLimits& limits = resources.settings.limits;
+  const Levels accepted = accepted_levels(*normal, limits);
+  if (accepted.levels.empty()) return limit_reached("particles", limits.max_particles);
+  const std::vector<Real> factors = real_time_factors(accepted.scenes, [&](const Scene& scene) {
+    return measure_cost(scene, &resources.environment.runner, resources.settings.instructions);
+  });
+  Json levels = Json::array();
+  const char* offered = to_string(accepted.levels.front());
+  for (std::size_t i = 0; i < factors.size(); ++i) {
+    const char* const level = to_string(accepted.levels[i]);
+    levels.push_back(
+        {{"level", level}, {"particles", accepted.particles[i]}, {"real_time_factor", factors[i]}});
+    if (factors[i] >= kMargin) offered = level;
+  }
   return Json{{"levels", std::move(levels)}, {"offered", offered}};
 }
 
-/// Samples each level only once, because other requests wait for it.
+/// Samples and measures each scene only once, because other requests wait for it.
 RpcResult list_levels(const ServerResources& resources, const std::string& name) {
   const auto known = resources.levels.find(name);
   if (known != resources.levels.end()) return known->second;
