@@ -78,7 +78,7 @@ export class Stage {
     this.renderer.info.autoReset = false; // a picture has several passes
     this.renderer.setPixelRatio(fullRatio());
     this.scene.add(this.splats.surface);
-    this.fluid = new FluidPass(shared.behind);
+    this.fluid = new FluidPass(shared.behind, shared.sun);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = !isCalm();
@@ -109,7 +109,6 @@ export class Stage {
 
   paint(look: Theme): void {
     this.renderer.setClearColor(look.stage);
-    this.fluid.paint(look);
     this.invalidate();
   }
 
@@ -331,7 +330,8 @@ export class Stage {
     const { renderer, scene, camera, fluidLook: look } = this;
     this.sunShadow?.draw(renderer, scene);
     if (look && this.style === 'fluid') {
-      this.fluid.draw(renderer, scene, camera, look);
+      const usual = camera.position.distanceTo(this.controls.target);
+      this.fluid.draw(renderer, scene, camera, look, usual);
       return;
     }
     if (look && this.style === 'splats') this.splats.draw(renderer, scene, camera);
