@@ -2,7 +2,7 @@ import { Box3, MathUtils, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3 
 import { WebGLRenderer } from 'three';
 import type { Object3D, Ray, WebGLRenderTarget } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
-import { directionOf } from './base/presets';
+import { firstDirection } from './base/presets';
 import { isCalm } from './base/calm';
 import { fitBox } from './base/fit';
 import type { Pose } from './base/pose';
@@ -19,9 +19,8 @@ import { graphicsOf } from './base/graphics';
 import type { Graphics } from './base/graphics';
 import type { Theme } from './base/theme';
 
-/** Direction of the initial camera from the centre of the scene; z is up. */
-const kFirstView = directionOf('corner');
-const kFirstMargin = 1.15;
+/** Space around the scene in the first view, relative to its size. */
+const kFirstMargin = 1.08;
 
 /** A picture without a successor for this time is still [ms]. */
 const kStillMs = 300;
@@ -214,8 +213,9 @@ export class Stage {
 
   private showFramed(): void {
     if (!this.framed || this.framed.isEmpty()) return;
-    const { target, distance } = fitBox(this.framed, kFirstView, this.camera, this.firstMargin);
-    this.camera.position.copy(target).addScaledVector(kFirstView, distance);
+    const from = firstDirection(this.framed);
+    const { target, distance } = fitBox(this.framed, from, this.camera, this.firstMargin);
+    this.camera.position.copy(target).addScaledVector(from, distance);
     this.camera.near = distance / 100;
     this.camera.far = distance * 20;
     this.camera.updateProjectionMatrix();

@@ -313,7 +313,12 @@ export class World {
   get fluid(): FluidLook | undefined {
     const radii = this.liquids.map(({ description }) => description.radius);
     if (radii.length === 0) return undefined;
-    return { radius: Math.max(...radii), clarity: this.shared.behind.clarity.value, paint: 0 };
+    return {
+      radius: Math.max(...radii),
+      clarity: this.shared.behind.clarity.value,
+      paint: 0,
+      showsNormals: false,
+    };
   }
 
   private lookOf({ material }: BodyDescription): Look {

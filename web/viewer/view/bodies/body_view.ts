@@ -19,7 +19,7 @@ import { shadowMaterial } from '../particles/shadow_material';
 import type { SolidSurface } from '../solids/solid';
 import type { SolidMaker } from '../solids/solid_of';
 import { BodyPlaces } from './body_places';
-import type { LiquidBody } from '../fluid/liquid_drawing';
+import type { LiquidBody } from '../fluid/liquid_body';
 import type { GridParticles } from '../particles/joined_grids';
 import type { RigidParticles } from '../particles/joined_particles';
 import type { SharedUniforms } from './shared_uniforms';
@@ -318,7 +318,8 @@ export class BodyView {
     const isOfNumbers = quantityOf(this.colouring) !== undefined;
     const { value } = this.uniforms.colour;
     if (isOfNumbers) value.copy(kNoValue);
-    else if (this.colouring === 'material') value.copy(this.appearance.colour);
+    else if (this.colouring === 'material' || this.colouring === 'normals')
+      value.copy(this.appearance.colour);
     else value.copy(bodyColour(kind, this.colouring === 'kind' ? 0 : this.nthOfKind));
   }
 

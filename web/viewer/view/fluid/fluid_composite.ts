@@ -20,6 +20,7 @@ const kSurface = /* glsl */ `
   uniform float clarity;
   uniform float paint;
   uniform float radius;
+  uniform bool shows_normals;
 
   vec3 ray_at(vec2 place) {
     vec4 far = projectionMatrixInverse * vec4(2.0 * place - 1.0, 1.0, 1.0);
@@ -108,7 +109,13 @@ const kLight = /* glsl */ `
       float front = 0.5 * clip.z / clip.w + 0.5;
       if (front < window_depth) {
         sum /= min(max(surface.g, ${kOutline}) + 0.1, 1.0); // the blur has spread the edge
-        light = mix(light, light_of(point, normal_at(here, surface.r), sum, surface.b, front), cover);
+        vec3 normal = normal_at(here, surface.r);
+        if (shows_normals) {
+          gl_FragDepth = front;
+          gl_FragColor = vec4(0.5 + 0.5 * transpose(mat3(viewMatrix)) * normal, 1.0);
+          return;
+        }
+        light = mix(light, light_of(point, normal, sum, surface.b, front), cover);
         window_depth = front;
       }
     }
@@ -134,6 +141,7 @@ export function fluidCompositeMaterial(sun: SunUniforms): ShaderMaterial {
       clarity: { value: 1 },
       paint: { value: 0 },
       radius: { value: 1 },
+      shows_normals: { value: false },
     },
   });
 }

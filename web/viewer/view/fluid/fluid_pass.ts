@@ -50,6 +50,8 @@ export interface FluidLook {
   clarity: number;
   /** Opacity: 0 for clear water, 1 for paint, which shows coloured quantities. */
   paint: number;
+  /** Whether colours are the normals of the surface: (1 + n) / 2 in world axes. */
+  showsNormals: boolean;
 }
 
 /**
@@ -178,6 +180,7 @@ export class FluidPass {
     uniforms.eye!.value = camera.position;
     uniforms.clarity!.value = look.clarity;
     uniforms.paint!.value = look.paint;
+    uniforms.shows_normals!.value = look.showsNormals;
     uniforms.radius!.value = look.radius;
     this.smoother.visible = false;
     this.result.visible = true;

@@ -1,6 +1,6 @@
 import type { CopiedColumns } from '../particles/particle_columns';
 import { FrothCells } from './froth_cells';
-import type { LiquidBody, LiquidTime } from './liquid_drawing';
+import type { LiquidBody, LiquidTime } from './liquid_body';
 
 /** Limits of the number of neighbours, relative to the number within the liquid. */
 const kLone = [0.04, 0.16] as const;

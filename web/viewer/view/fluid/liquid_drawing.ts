@@ -2,31 +2,14 @@ import { Color, Group, Mesh } from 'three';
 import type { BufferGeometry, ShaderMaterial } from 'three';
 import { kLayers } from '../base/layers';
 import type { LiquidStyle } from '../base/liquid_style';
-import type { SharedUniforms } from '../bodies/shared_uniforms';
+import type { LookUniforms } from '../colour/look_uniforms';
 import { bodyUniforms } from '../particles/impostor';
 import { JoinedColumns } from '../particles/joined_columns';
-import type { GridBody } from '../particles/joined_columns';
 import { splatDepthMaterial, splatMaterial } from '../particles/splat_material';
 import { fluidDepthMaterial, fluidShadowMaterial, fluidThicknessMaterial } from './fluid_particles';
+import type { BehindUniforms } from './fluid_pass';
 import { Froth } from './froth';
-
-/** A liquid body. */
-export interface LiquidBody extends GridBody {
-  /** Unit of the columns' values. */
-  valueQuantum: number;
-  /** Particle radius [m]. */
-  radius: number;
-}
-
-/** What LiquidDrawing needs to know of a frame. */
-export interface LiquidTime {
-  /** Unit of the positions [m]. */
-  quantum: number;
-  /** Time since the previous frame [s]. */
-  seconds: number;
-  /** Height of the scene [m]. */
-  height: number;
-}
+import type { LiquidBody, LiquidTime } from './liquid_body';
 
 /** Draws all liquids together in the styles fluid and splats. */
 export class LiquidDrawing {
@@ -37,8 +20,7 @@ export class LiquidDrawing {
   private readonly meshes: { mesh: Mesh; style: LiquidStyle }[] = [];
   private drawn: LiquidStyle = 'splats';
 
-  constructor(shared: SharedUniforms) {
-    const { look, behind } = shared;
+  constructor({ look, behind }: { look: LookUniforms; behind: BehindUniforms }) {
     const uniforms = (this.uniforms = bodyUniforms(new Color(), look, true));
     this.add(splatDepthMaterial(uniforms, 1), 'splats', 'splats', 1);
     this.add(splatMaterial(uniforms, 1), 'splats', 'splats', 2);
