@@ -110,13 +110,16 @@ async function expectWithinLimits(scene: string, view: string): Promise<void> {
 it.each([
   'blood-vessel', // most draw calls
   'flooded-town', // most bodies and appearances
+  'wave-tank', // most bodies of liquid
 ])('draws %s within the limits of passes and draw calls', async (scene) => {
   await expectWithinLimits(scene, 'liquid:fluid');
 });
 
-it.each(['particles', 'skin', 'both'])(
-  'draws many bodies within the limits as %s',
-  async (style) => {
-    await expectWithinLimits('brick-wall', `solids:${style}`);
-  },
-);
+it.each([
+  ['brick-wall', 'solids:particles'],
+  ['brick-wall', 'solids:skin'],
+  ['brick-wall', 'solids:both'],
+  ['blood-vessel', 'liquid:fluid,solids:both'],
+  ['wave-tank', 'liquid:particles'],
+  ['wave-tank', 'liquid:surface'],
+])('draws many bodies of %s within the limits, as %s', expectWithinLimits);

@@ -87,3 +87,37 @@ async function readPixels([address, width]: readonly [string, number]): Promise<
   const png = btoa(String.fromCharCode(...new Uint8Array(await file.arrayBuffer())));
   return { width, height, data, png };
 }
+
+/** A picture in full size: red, green, blue and opacity of each pixel, 0 to 255. */
+export interface FullPixels {
+  width: number;
+  height: number;
+  data: Uint8Array;
+}
+
+/** Returns the visible canvas after it is stable. */
+export async function fullPixelsOf(viewer: Viewer): Promise<FullPixels> {
+  const page = await viewer.blankPage();
+  const { width, height, base64 } = await page.evaluate(readAll, await viewer.stillPicture());
+  return { width, height, data: Uint8Array.from(Buffer.from(base64, 'base64')) };
+}
+
+/** Runs in the browser. */
+async function readAll(
+  address: string,
+): Promise<{ width: number; height: number; base64: string }> {
+  const image = new Image();
+  image.src = address;
+  await image.decode();
+  const { width, height } = image;
+  const context = new OffscreenCanvas(width, height).getContext('2d');
+  if (!context) throw new Error('the browser cannot draw');
+  context.drawImage(image, 0, 0);
+  const { data } = context.getImageData(0, 0, width, height);
+  const kBlock = 30_000;
+  let text = '';
+  for (let at = 0; at < data.length; at += kBlock) {
+    text += String.fromCharCode(...data.subarray(at, at + kBlock));
+  }
+  return { width, height, base64: btoa(text) };
+}

@@ -79,6 +79,11 @@ export class Viewer {
     await this.page.evaluate((value) => window.brake(value), on);
   }
 
+  /** Sets these view settings, in the form of links, and resets the others to their defaults. */
+  async setView(view: string): Promise<void> {
+    await this.page.evaluate(changeView, view);
+  }
+
   /** Waits for a matching element. The page publishes its state in data attributes. */
   async until(selector: string): Promise<void> {
     await this.page.waitForSelector(selector, { state: 'attached' });
@@ -250,4 +255,19 @@ async function countDifferences([first, second, step]: readonly [
     if (isSeen) ++count;
   }
   return count;
+}
+
+/** Runs in the browser. */
+function changeView(view: string): void {
+  const given = new Map(view.split(',').map((part) => part.split(':') as [string, string]));
+  const options = document.getElementById('view-options')!;
+  for (const control of options.querySelectorAll<HTMLInputElement | HTMLSelectElement>(
+    'input, select',
+  )) {
+    const value = given.get(control.id.replace('view-', ''));
+    if (control instanceof HTMLSelectElement) control.value = value ?? control.options[0]!.value;
+    else if (control.type === 'checkbox') control.checked = value === 'true';
+    else control.value = value ?? (control.type === 'range' ? '0.5' : '');
+    control.dispatchEvent(new Event(control.type === 'range' ? 'input' : 'change'));
+  }
 }

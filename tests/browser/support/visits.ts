@@ -87,7 +87,7 @@ export class Visits {
 
   /** Sets these view settings and resets the others to their defaults. */
   async set(view: string): Promise<void> {
-    await this.viewer.page.evaluate(changeView, view);
+    await this.viewer.setView(view);
   }
 
   /** Returns the present scene. */
@@ -147,19 +147,4 @@ function closeAll(): void {
     section.open = section.id === 'numbers-details';
   }
   (document.activeElement as HTMLElement | null)?.blur();
-}
-
-/** Runs in the browser. */
-function changeView(view: string): void {
-  const given = new Map(view.split(',').map((part) => part.split(':') as [string, string]));
-  const options = document.getElementById('view-options')!;
-  for (const control of options.querySelectorAll<HTMLInputElement | HTMLSelectElement>(
-    'input, select',
-  )) {
-    const value = given.get(control.id.replace('view-', ''));
-    if (control instanceof HTMLSelectElement) control.value = value ?? control.options[0]!.value;
-    else if (control.type === 'checkbox') control.checked = value === 'true';
-    else control.value = value ?? (control.type === 'range' ? '0.5' : '');
-    control.dispatchEvent(new Event(control.type === 'range' ? 'input' : 'change'));
-  }
 }

@@ -1,7 +1,8 @@
 import { Color, Mesh } from 'three';
 import type { ShaderMaterial } from 'three';
 import { describe, expect, it } from 'vitest';
-import type { Appearance, SessionDescription } from '../../../web/client/index';
+import { BodyKind } from '../../../web/client/index';
+import type { Appearance, Frame, SessionDescription } from '../../../web/client/index';
 import {
   kAbsorptionField,
   kAppearanceFields,
@@ -14,7 +15,7 @@ import { sharedUniforms } from '../../../web/viewer/view/bodies/shared_uniforms'
 import { World } from '../../../web/viewer/view/world';
 import format from '../../../protocol/schemas/scene_format.json';
 
-const kNames = ['stage', 'floor', 'shadow', 'grid', 'edge', 'wall', 'mark', 'skyLow', 'skyHigh'];
+const kNames = ['stage', 'floor', 'shadow', 'grid', 'edge', 'wall', 'mark'];
 const kTheme = Object.fromEntries(kNames.map((name) => [name, new Color()])) as unknown as Theme;
 const kSchema = format.$defs.appearance.properties;
 
@@ -49,7 +50,7 @@ function described(honey: Appearance, water: Appearance): SessionDescription {
 
 /** Returns the values of a uniform of the world's bodies. */
 function uniformsOf(world: World, name: string): unknown[] {
-  const groups = world.group.children.filter((child) => child.children.length > 3);
+  const groups = world.group.children.filter((child) => !child.matrixAutoUpdate);
   return groups.map((group) => {
     const mesh = group.children.find((child) => child instanceof Mesh) as Mesh;
     return (mesh.material as ShaderMaterial).uniforms[name]!.value as unknown;
@@ -72,12 +73,24 @@ describe('Appearance', () => {
   });
 
   it('relates the absorption of each liquid to that of the darkest', () => {
-    const world = new World(kTheme, sharedUniforms());
+    const shared = sharedUniforms();
+    const world = new World(kTheme, shared);
     world.describe(described({ opacity: 0.8 }, { absorption_length: 0.5 }));
     expect(world.fluid!.clarity).toBeCloseTo(0.25); // the vat's smallest width × (1.05 - 0.8)
-    const [honey, water] = uniformsOf(world, 'density') as number[];
-    expect(honey).toBeCloseTo(1);
-    expect(water).toBeCloseTo(0.5);
+    const header = { epoch: 1, time: 0, origin: [0, 0, 0], quantum: 0.1, attributeQuanta: [] };
+    const kind = BodyKind.liquid;
+    const blocks = [1, 2].map((body) => ({
+      ...{ kind, body, numbers: undefined, attributes: [] },
+      positions: Uint16Array.of(body, 0, 0),
+    }));
+    world.show({ header, blocks } as unknown as Frame);
+    world.prepare();
+    const { data, width } = shared.look.body_table.value!.image as {
+      data: Float32Array;
+      width: number;
+    };
+    expect(data[4 * width - 1]).toBeCloseTo(1);
+    expect(data[8 * width - 1]).toBeCloseTo(0.5);
   });
 
   it('gives even opaque liquids an absorption length', () => {

@@ -1,6 +1,8 @@
+import { Box3, Vector3 } from 'three';
 import { describe, expect, it } from 'vitest';
 import { nearestEye } from '../../../web/viewer/view/base/fit';
 import type { Seen } from '../../../web/viewer/view/base/fit';
+import { directionOf, firstDirection } from '../../../web/viewer/view/base/presets';
 
 const kSide = 0.5;
 const kRise = 0.3;
@@ -37,5 +39,29 @@ describe('nearestEye', () => {
     expect(seen.left).toBeCloseTo(1, 12);
     expect(seen.up).toBeLessThan(1);
     expect(seen.down).toBeLessThan(1);
+  });
+});
+
+describe('firstDirection', () => {
+  const directionTo = (width: number, depth: number): Vector3 =>
+    firstDirection(new Box3(new Vector3(), new Vector3(width, depth, 1)));
+
+  it.each([
+    [1, 1],
+    [2, 1],
+    [1, 4],
+    [0, 1],
+  ])('is from the corner for %d m × %d m', (width, depth) => {
+    expect(directionTo(width, depth).distanceTo(directionOf('corner'))).toBeLessThan(1e-12);
+  });
+
+  it('is nearer to the front for shallower scenes, and never from the front alone', () => {
+    const depths = [2, 1, 0.8, 0.4, 0];
+    const turns = depths.map((depth) => -directionTo(2, depth).y);
+    expect(turns).toEqual([...turns].sort((a, b) => a - b));
+    for (const depth of depths) {
+      const { x, z } = directionTo(2, depth);
+      expect(Math.min(x, z)).toBeGreaterThan(0.1);
+    }
   });
 });

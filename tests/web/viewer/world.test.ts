@@ -6,7 +6,7 @@ import { sharedUniforms } from '../../../web/viewer/view/bodies/shared_uniforms'
 import type { Theme } from '../../../web/viewer/view/base/theme';
 import { World } from '../../../web/viewer/view/world';
 
-const kNames = ['stage', 'floor', 'shadow', 'grid', 'edge', 'wall', 'mark', 'skyLow', 'skyHigh'];
+const kNames = ['stage', 'floor', 'shadow', 'grid', 'edge', 'wall', 'mark'];
 const kTheme = Object.fromEntries(kNames.map((name) => [name, new Color()])) as unknown as Theme;
 
 function described(epoch: number, bodies: number[], scene = 'pool'): SessionDescription {

@@ -37,6 +37,7 @@ const kWords: Words = {
     density: 'by density',
     pressure: 'by pressure',
     force: 'by force per mass',
+    normals: 'by normals of clear liquids',
   },
   map: { viridis: 'viridis', cividis: 'cividis', turbo: 'turbo', 'blue-red': 'blue to red' },
   clip: { off: 'nothing', x: 'along x', y: 'along y', z: 'along z' },

@@ -2,7 +2,7 @@ import { Box3, MathUtils, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3 
 import { WebGLRenderer } from 'three';
 import type { Object3D, Ray, WebGLRenderTarget } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
-import { directionOf } from './base/presets';
+import { firstDirection } from './base/presets';
 import { isCalm } from './base/calm';
 import { fitBox } from './base/fit';
 import type { Pose } from './base/pose';
@@ -19,9 +19,8 @@ import { graphicsOf } from './base/graphics';
 import type { Graphics } from './base/graphics';
 import type { Theme } from './base/theme';
 
-/** Direction of the initial camera from the centre of the scene; z is up. */
-const kFirstView = directionOf('corner');
-const kFirstMargin = 1.15;
+/** Space around the scene in the first view, relative to its size. */
+const kFirstMargin = 1.08;
 
 /** A picture without a successor for this time is still [ms]. */
 const kStillMs = 300;
@@ -78,7 +77,7 @@ export class Stage {
     this.renderer.info.autoReset = false; // a picture has several passes
     this.renderer.setPixelRatio(fullRatio());
     this.scene.add(this.splats.surface);
-    this.fluid = new FluidPass(shared.behind);
+    this.fluid = new FluidPass(shared.behind, shared.sun);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = !isCalm();
@@ -109,7 +108,6 @@ export class Stage {
 
   paint(look: Theme): void {
     this.renderer.setClearColor(look.stage);
-    this.fluid.paint(look);
     this.invalidate();
   }
 
@@ -215,8 +213,9 @@ export class Stage {
 
   private showFramed(): void {
     if (!this.framed || this.framed.isEmpty()) return;
-    const { target, distance } = fitBox(this.framed, kFirstView, this.camera, this.firstMargin);
-    this.camera.position.copy(target).addScaledVector(kFirstView, distance);
+    const from = firstDirection(this.framed);
+    const { target, distance } = fitBox(this.framed, from, this.camera, this.firstMargin);
+    this.camera.position.copy(target).addScaledVector(from, distance);
     this.camera.near = distance / 100;
     this.camera.far = distance * 20;
     this.camera.updateProjectionMatrix();
@@ -331,7 +330,8 @@ export class Stage {
     const { renderer, scene, camera, fluidLook: look } = this;
     this.sunShadow?.draw(renderer, scene);
     if (look && this.style === 'fluid') {
-      this.fluid.draw(renderer, scene, camera, look);
+      const usual = camera.position.distanceTo(this.controls.target);
+      this.fluid.draw(renderer, scene, camera, look, usual);
       return;
     }
     if (look && this.style === 'splats') this.splats.draw(renderer, scene, camera);

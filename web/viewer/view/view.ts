@@ -155,7 +155,10 @@ export class View {
     this.world.marks.apply(settings);
     const paint = quantityOf(settings.colour) ? 1 : 0;
     const fluid = this.world.fluid;
-    this.stage.showLiquid(style, fluid && { ...fluid, paint });
+    this.stage.showLiquid(
+      style,
+      fluid && { ...fluid, paint, showsNormals: settings.colour === 'normals' },
+    );
     this.motion.smooth =
       settings.smooth === 'on' || (settings.smooth === 'auto' && !graphics.isSoftware);
     this.askFor(settings);

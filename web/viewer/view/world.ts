@@ -15,16 +15,18 @@ import { BodyView, isGrid } from './bodies/body_view';
 import { kQuantities, quantityOf } from './colour/quantity';
 import type { Range } from './colour/range';
 import type { FluidLook } from './fluid/fluid_pass';
+import { LiquidDrawing } from './fluid/liquid_drawing';
 import type { Footprint } from './base/footprint';
 import { absorptionLengthOf, lookOf } from './base/appearance';
 import type { Look } from './base/appearance';
-import { Ground } from './base/ground';
+import { Ground, roundLength } from './base/ground';
 import type { Theme } from './base/theme';
 import { Marks } from './marks/marks';
 import type { LiquidStyle } from './base/liquid_style';
 import type { Choice } from './base/settings';
 import type { SharedUniforms } from './bodies/shared_uniforms';
 import { BodyTable } from './particles/body_table';
+import { JoinedGrids } from './particles/joined_grids';
 import { JoinedParticles } from './particles/joined_particles';
 import type { JoinedSolids } from './solids/joined_solids';
 import type { SolidMaker } from './solids/solid_of';
@@ -54,8 +56,6 @@ export class World {
   private vat: VatView | undefined;
   private description: SessionDescription | undefined;
   private looks: ReadonlyMap<string, Look> = new Map();
-  /** See FluidLook. */
-  private clarity = 1;
   /** The union of the vat's positions or, without a vat, the initial extent of the bodies. */
   private seen = new Box3();
   private style: LiquidStyle = 'splats';
@@ -67,6 +67,11 @@ export class World {
   private readonly table: BodyTable;
   private readonly particles: JoinedParticles;
   private joined: JoinedSolids | undefined;
+  /** Liquid and deformable bodies that are drawn together. */
+  private readonly grids: JoinedGrids;
+  private readonly drawing: LiquidDrawing;
+  /** Unit of the positions in the last frame [m]. */
+  private quantum = 1;
   /** Called after changes between frames. */
   onChange: () => void = () => undefined;
   /** Time of the last frame [s]. */
@@ -81,7 +86,10 @@ export class World {
     this.ground = new Ground(look);
     this.table = new BodyTable(shared.look);
     this.particles = new JoinedParticles(shared);
+    this.grids = new JoinedGrids(shared);
+    this.drawing = new LiquidDrawing(shared);
     this.group.add(this.ground.mesh, this.marks.group, this.particles.group);
+    this.group.add(this.grids.group, this.drawing.group);
     this.paint(look);
   }
 
@@ -95,16 +103,26 @@ export class World {
 
   /** Called before each picture. */
   prepare(): void {
-    const rigid = [...this.bodies.values()].filter(({ isShownRigid }) => isShownRigid);
-    this.table.reserve(rigid.length);
-    rigid.forEach((view, row) => {
-      const sizes = { length: view.bodyLength, radius: view.description.radius };
-      this.table.write(row, view.group.matrix, view.uniforms, sizes);
+    const shown = [...this.bodies.values()].filter(({ group }) => group.visible);
+    this.table.reserve(shown.length);
+    shown.forEach((view, row) => {
+      const { description, density, bodyLength: length } = view;
+      const values = { length, radius: description.radius, density };
+      this.table.write(row, view.group.matrix, view.uniforms, values);
     });
     this.table.finish();
-    this.particles.update(rigid.map((view, row) => ({ row, ...view.particles })));
+    const rows = shown.map((view, row) => ({ view, row }));
+    const rigid = rows.filter(({ view }) => view.isRigid);
+    this.particles.update(rigid.map(({ view, row }) => ({ row, ...view.particles })));
     this.joined?.update(
-      rigid.flatMap(({ joinable: solid }, row) => (solid ? [{ row, solid }] : [])),
+      rigid.flatMap(({ view: { joinable: solid }, row }) => (solid ? [{ row, solid }] : [])),
+    );
+    const grids = rows.filter(({ view }) => !view.isRigid);
+    this.grids.update(grids.map(({ view, row }) => ({ row, ...view.gridParticles })));
+    const liquids = grids.filter(({ view }) => view.description.kind === 'liquid');
+    this.drawing.update(
+      liquids.map(({ view, row }) => ({ row, ...view.gridParticles })),
+      { quantum: this.quantum, seconds: this.shared.look.interval.value, height: this.height },
     );
   }
 
@@ -166,6 +184,7 @@ export class World {
     const seconds = frame.header.time - (this.time ?? frame.header.time);
     this.time = frame.header.time;
     this.shared.look.interval.value = seconds;
+    this.quantum = frame.header.quantum;
     for (const block of frame.blocks) {
       if (block.kind === BodyKind.vat) this.moveVat(block.offset);
       else this.showBlock(block, frame.header, seconds);
@@ -275,6 +294,7 @@ export class World {
   /** Sets the style of liquids. */
   set liquidStyle(style: LiquidStyle) {
     this.style = style;
+    this.drawing.style = style;
     for (const view of this.bodies.values()) view.liquidStyle = style;
   }
 
@@ -293,7 +313,12 @@ export class World {
   get fluid(): FluidLook | undefined {
     const radii = this.liquids.map(({ description }) => description.radius);
     if (radii.length === 0) return undefined;
-    return { radius: Math.max(...radii), clarity: this.clarity, paint: 0 };
+    return {
+      radius: Math.max(...radii),
+      clarity: this.shared.behind.clarity.value,
+      paint: 0,
+      showsNormals: false,
+    };
   }
 
   private lookOf({ material }: BodyDescription): Look {
@@ -312,8 +337,10 @@ export class World {
       const width = widths ? Math.min(...widths) : 20 * description.radius;
       return absorptionLengthOf(this.lookOf(description), width);
     });
-    this.clarity = Math.min(...lengths);
-    this.liquids.forEach((view, i) => (view.density = this.clarity / lengths[i]!));
+    if (lengths.length === 0) return;
+    const clarity = Math.min(...lengths);
+    this.shared.behind.clarity.value = clarity;
+    this.liquids.forEach((view, i) => (view.density = clarity / lengths[i]!));
   }
 
   private moveVat(offset: Vector): void {
@@ -324,6 +351,9 @@ export class World {
     const [x, y, z] = offset;
     this.shared.floor.floor_z.value = vat.min[2] + z;
     this.shared.floor.reach.value = 0.6 * (vat.max[2] - vat.min[2]);
+    const sides = [vat.max[0] - vat.min[0], vat.max[1] - vat.min[1]];
+    const tile = Math.max(Math.min(...sides) / 4, Math.max(...sides) / 24);
+    this.shared.floor.tile.value = roundLength(tile);
     this.shared.floor.floor_bounds.value.set(
       vat.min[0] + x,
       vat.min[1] + y,
@@ -340,6 +370,7 @@ export class World {
 
   private clear(): void {
     this.seen.makeEmpty();
+    this.drawing.clear();
     for (const view of this.bodies.values()) view.dispose();
     this.bodies = new Map();
     this.vat?.dispose();

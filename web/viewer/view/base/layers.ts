@@ -9,4 +9,6 @@ export const kLayers = {
   fluidThickness: 4,
   /** Bodies that cast shadows; they are in the scene too. */
   casters: 5,
+  /** Liquids that cast coloured shadows. */
+  liquidShadow: 6,
 };

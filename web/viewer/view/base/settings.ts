@@ -11,7 +11,8 @@ export const kChoices = {
   liquid: ['auto', 'fluid', 'surface', 'splats', 'particles'],
   /** Style of deformable and rigid bodies. */
   solids: ['shape', 'skin', 'particles', 'both'],
-  colour: ['material', 'body', 'kind', 'speed', 'density', 'pressure', 'force'],
+  /** `normals`: the directions of the surfaces of clear liquids, as red, green and blue. */
+  colour: ['material', 'body', 'kind', 'speed', 'density', 'pressure', 'force', 'normals'],
   map: ['viridis', 'cividis', 'turbo', 'blue-red'],
   /** The axis of the clip plane at `clipAt`. */
   clip: ['off', 'x', 'y', 'z'],

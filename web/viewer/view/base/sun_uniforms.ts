@@ -1,5 +1,5 @@
 import { Matrix4 } from 'three';
-import type { DepthTexture, IUniform } from 'three';
+import type { DepthTexture, IUniform, Texture } from 'three';
 import { kSun } from './light';
 
 /** The shadow map of the sun, for the materials that receive shadows. */
@@ -14,10 +14,19 @@ export interface SunUniforms {
   sun_texel: IUniform<number>;
   /** Number of samples of the map for a point. */
   sun_samples: IUniform<number>;
+  /** Optical depth of the liquids in rgb; 1 - depth of their nearest point in the map in alpha. */
+  sun_liquid: IUniform<Texture | null>;
+  /** Range of the map's depths [m]. */
+  sun_range: IUniform<number>;
+  floor_z: IUniform<number>;
 }
 
-export function sunUniforms(): SunUniforms {
+/** `floor_z`: the height of the floor [m]. */
+export function sunUniforms(floor_z: IUniform<number>): SunUniforms {
   return {
+    floor_z,
+    sun_liquid: { value: null },
+    sun_range: { value: 1 },
     sun_map: { value: null },
     to_sun: { value: new Matrix4() },
     sun_blur: { value: 0.002 },
@@ -33,6 +42,9 @@ export const kSunlight = /* glsl */ `
   uniform float sun_blur;
   uniform float sun_texel;
   uniform int sun_samples;
+  uniform sampler2D sun_liquid;
+  uniform float sun_range;
+  uniform float floor_z;
 
   float sunlight(vec3 world, vec3 n) {
     if (sun_texel <= 0.0 || dot(n, ${kSun}) <= 0.0) return 1.0; // the dark side needs no shadow
@@ -46,5 +58,17 @@ export const kSunlight = /* glsl */ `
       sum += texture(sun_map, vec3(at.xy + aside, at.z - 0.0015));
     }
     return sum / float(sun_samples);
+  }
+
+  /** Returns the part of the sun's red, green and blue that passes the liquids above a point. */
+  vec3 through_liquids(vec3 world) {
+    vec3 at = (to_sun * vec4(world, 1.0)).xyz;
+    if (any(lessThan(at.xy, vec2(0.0))) || any(greaterThan(at.xy, vec2(1.0)))) return vec3(1.0);
+    vec4 liquid = texture(sun_liquid, at.xy);
+    float above = (at.z - 1.0 + liquid.a) * sun_range;
+    if (liquid.a <= 0.0 || above <= 0.0) return vec3(1.0);
+    // The depth below the point is unknown. It is assumed to reach the floor.
+    float below = max(world.z - floor_z, 0.0) / ${kSun}.z;
+    return exp(-liquid.rgb * above / (above + below));
   }
 `;

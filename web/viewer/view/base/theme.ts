@@ -11,9 +11,6 @@ export interface Theme {
   wall: Color;
   /** Arrows. */
   mark: Color;
-  /** The sky reflected by liquids: near the ground and overhead. */
-  skyLow: Color;
-  skyHigh: Color;
 }
 
 const kProperties: Readonly<Record<keyof Theme, string>> = {
@@ -24,8 +21,6 @@ const kProperties: Readonly<Record<keyof Theme, string>> = {
   edge: '--view-edge',
   wall: '--view-wall',
   mark: '--view-mark',
-  skyLow: '--view-sky-low',
-  skyHigh: '--view-sky-high',
 };
 
 /** Returns the theme of an element's style, light or dark. */

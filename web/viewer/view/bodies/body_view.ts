@@ -8,10 +8,8 @@ import type { Hit } from '../base/pick';
 import { kNoValue } from '../colour/maps';
 import { kQuantities, quantityOf } from '../colour/quantity';
 import type { Range } from '../colour/range';
-import { fluidDepthMaterial, fluidThicknessMaterial } from '../fluid/fluid_particles';
 import { bodyUniforms, kColourSource } from '../particles/impostor';
 import type { BodyUniforms } from '../particles/impostor';
-import { kLayers } from '../base/layers';
 import type { LiquidStyle } from '../base/liquid_style';
 import { bodyColour } from '../base/palette';
 import { ParticleColumns } from '../particles/particle_columns';
@@ -21,15 +19,16 @@ import { shadowMaterial } from '../particles/shadow_material';
 import type { SolidSurface } from '../solids/solid';
 import type { SolidMaker } from '../solids/solid_of';
 import { BodyPlaces } from './body_places';
+import type { LiquidBody } from '../fluid/liquid_body';
+import type { GridParticles } from '../particles/joined_grids';
 import type { RigidParticles } from '../particles/joined_particles';
 import type { SharedUniforms } from './shared_uniforms';
 import { sphereMaterial } from '../particles/sphere_material';
 import { Skin } from '../surface/skin';
 import type { Workshop } from '../surface/workshop';
-import { splatDepthMaterial, splatMaterial } from '../particles/splat_material';
 
-/** Draw order: shadows on the floor, then solids. Liquids draw the depth before the splats. */
-const kOrder = { shadow: 1, solid: 2, splatDepth: 1, splat: 2, skin: 3 };
+/** Draw order: shadows on the floor, then solids. */
+const kOrder = { shadow: 1, solid: 2, skin: 3 };
 
 /** Sizes of skins; see SurfaceJob. If particles are shown too, skins enclose the spheres. */
 const kSkinSizes = { liquid: 1.5, deformable: 1.2, rigid: 1.2 };
@@ -54,8 +53,6 @@ export class BodyView {
   /** The motion of a rigid body; undefined for others. */
   readonly motion: RigidMotion | undefined;
   private readonly materials: ShaderMaterial[] = [];
-  /** The meshes of a liquid, with their styles. */
-  private readonly styles: { mesh: Mesh; style: LiquidStyle }[] = [];
   private colouring: Choice<'colour'> = 'material';
   /** Soft shadows on the floor below particles. */
   private readonly spots: Mesh;
@@ -64,6 +61,8 @@ export class BodyView {
   /** The surface of a solid with a known shape. */
   private solid: SolidSurface | undefined;
   private solidStyleNow: Choice<'solids'> = 'shape';
+  /** Of a liquid: its absorption relative to the reference of the scene. */
+  density = 1;
   /** The strain at which links of a deformable body tear; undefined: they do not. */
   tearingStrain: number | undefined;
   private values: Float32Array | undefined;
@@ -96,7 +95,7 @@ export class BodyView {
     this.skinSize = kSkinSizes[kind];
     this.skin.mesh.renderOrder = kOrder.skin;
     this.group.add(this.skin.mesh);
-    if (kind === 'liquid') this.addLiquid();
+    this.liquidStyle = 'splats';
     this.uniforms.variant.value = (nthOfKind * kGoldenRatio) % 1;
     this.look = appearance;
   }
@@ -110,11 +109,6 @@ export class BodyView {
     if (this.solid) this.solid.finish = look.finish;
     if (uniforms.colour_source.value === kColourSource.body) this.showColour(kColourSource.body);
     this.showOpacity();
-  }
-
-  /** Of a liquid: its absorption relative to the reference of the scene. */
-  set density(density: number) {
-    this.uniforms.density.value = density;
   }
 
   get count(): number {
@@ -226,15 +220,22 @@ export class BodyView {
     return place === undefined ? undefined : this.places.at(place);
   }
 
-  /** Whether it is a rigid body with a picture. */
-  get isShownRigid(): boolean {
-    return this.motion !== undefined && this.group.visible;
+  /** Whether it is a rigid body. */
+  get isRigid(): boolean {
+    return this.motion !== undefined;
   }
 
   /** The surface of a rigid body, if it can be drawn together with those of other bodies. */
   get joinable(): SolidSurface | undefined {
     const { solid } = this;
     return solid?.mesh.visible && solid.opacity === 1 ? solid : undefined;
+  }
+
+  /** The particles of a liquid or deformable body. */
+  get gridParticles(): Omit<GridParticles & LiquidBody, 'row'> {
+    const { spheres, spots, columns, description, uniforms } = this;
+    const { body, radius } = description;
+    return { body, radius, spheres, spots, columns, valueQuantum: uniforms.value_quantum.value };
   }
 
   /** The particles of a rigid body. */
@@ -258,7 +259,10 @@ export class BodyView {
 
   /** Sets the style of a liquid. Does not affect other bodies. */
   set liquidStyle(chosen: LiquidStyle) {
-    for (const { mesh, style } of this.styles) mesh.visible = style === chosen;
+    if (this.description.kind !== 'liquid') return;
+    this.spheres.visible = chosen === 'particles';
+    this.spots.visible = chosen !== 'fluid'; // it is in the shadow map
+    this.skin.mesh.visible = chosen === 'surface';
     this.updateSkin();
   }
 
@@ -314,35 +318,15 @@ export class BodyView {
     const isOfNumbers = quantityOf(this.colouring) !== undefined;
     const { value } = this.uniforms.colour;
     if (isOfNumbers) value.copy(kNoValue);
-    else if (this.colouring === 'material') value.copy(this.appearance.colour);
+    else if (this.colouring === 'material' || this.colouring === 'normals')
+      value.copy(this.appearance.colour);
     else value.copy(bodyColour(kind, this.colouring === 'kind' ? 0 : this.nthOfKind));
   }
 
-  private addLiquid(): void {
-    const { uniforms, spheres } = this;
-    const { radius } = this.description;
-    const thickness = fluidThicknessMaterial(uniforms, radius, this.shared.behind);
-    const splatDepth = splatDepthMaterial(uniforms, radius);
-    this.styles.push(
-      { mesh: spheres, style: 'particles' },
-      { mesh: this.add(splatDepth, kOrder.splatDepth, 'splats'), style: 'splats' },
-      { mesh: this.add(splatMaterial(uniforms, radius), kOrder.splat, 'splats'), style: 'splats' },
-      { mesh: this.add(fluidDepthMaterial(uniforms, radius), 0, 'fluidDepth'), style: 'fluid' },
-      { mesh: this.add(thickness, 0, 'fluidThickness'), style: 'fluid' },
-      { mesh: this.skin.mesh, style: 'surface' },
-    );
-    this.liquidStyle = 'splats';
-  }
-
-  private add(
-    material: ShaderMaterial,
-    order: number,
-    layer: keyof typeof kLayers = 'scene',
-  ): Mesh {
+  private add(material: ShaderMaterial, order: number): Mesh {
     const mesh = new Mesh(this.columns.geometry, material);
     mesh.frustumCulled = false; // the geometry's bounds do not contain its instances
     mesh.renderOrder = order;
-    mesh.layers.set(kLayers[layer]);
     this.group.add(mesh);
     this.materials.push(material);
     return mesh;

@@ -16,10 +16,11 @@ export interface SharedUniforms {
 }
 
 export function sharedUniforms(): SharedUniforms {
+  const floor = floorUniforms();
   return {
-    floor: floorUniforms(),
+    floor,
     behind: behindUniforms(),
     look: lookUniforms(),
-    sun: sunUniforms(),
+    sun: sunUniforms(floor.floor_z),
   };
 }

@@ -2,7 +2,7 @@ import type { Attributes } from '../../../client/index';
 import type { Choice } from '../base/settings';
 
 /** The quantities that colours can show. */
-export type QuantityName = Exclude<Choice<'colour'>, 'material' | 'body' | 'kind'>;
+export type QuantityName = Exclude<Choice<'colour'>, 'material' | 'body' | 'kind' | 'normals'>;
 
 export interface Quantity {
   title: string;
@@ -24,7 +24,7 @@ export function attributeOf(name: QuantityName): keyof Attributes {
 }
 
 export function quantityOf(colour: Choice<'colour'>): QuantityName | undefined {
-  return colour === 'material' || colour === 'body' || colour === 'kind' ? undefined : colour;
+  return colour in kQuantities ? (colour as QuantityName) : undefined;
 }
 
 /** Typical gravity [m/s²] and density [kg/m³], for the resolution of attributes. */

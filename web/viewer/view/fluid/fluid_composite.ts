@@ -1,6 +1,12 @@
-import { Color, ShaderMaterial } from 'three';
+import { Matrix4, ShaderMaterial, Vector3 } from 'three';
+import { kEnvironment } from '../base/environment';
 import { kSun } from '../base/light';
 import { kScreenVertexShader } from '../base/screen';
+import { kSunlight } from '../base/sun_uniforms';
+import type { SunUniforms } from '../base/sun_uniforms';
+
+/** The blurred coverage at the outline of a liquid. */
+const kOutline = 0.42;
 
 const kSurface = /* glsl */ `
   in vec2 at;
@@ -10,19 +16,19 @@ const kSurface = /* glsl */ `
   uniform sampler2D thickness;
   uniform mat4 projectionMatrix;
   uniform mat4 projectionMatrixInverse;
+  uniform vec3 eye;
   uniform float clarity;
   uniform float paint;
   uniform float radius;
-  uniform vec3 sky_low;
-  uniform vec3 sky_high;
+  uniform bool shows_normals;
 
   vec3 ray_at(vec2 place) {
     vec4 far = projectionMatrixInverse * vec4(2.0 * place - 1.0, 1.0, 1.0);
     return far.xyz / -far.z;
   }
 
-  float depth_at(ivec2 place) {
-    return texelFetch(depth, clamp(place, ivec2(0), textureSize(depth, 0) - 1), 0).r;
+  vec4 surface_at(ivec2 place) {
+    return texelFetch(depth, clamp(place, ivec2(0), textureSize(depth, 0) - 1), 0);
   }
 
   vec3 point_at(ivec2 place, float away) {
@@ -31,8 +37,8 @@ const kSurface = /* glsl */ `
 
   /** Returns the slope along one direction, from the side with the smaller step. */
   vec3 slope(ivec2 here, ivec2 aside, vec3 point) {
-    float ahead = depth_at(here + aside);
-    float back = depth_at(here - aside);
+    float ahead = surface_at(here + aside).r;
+    float back = surface_at(here - aside).r;
     bool takes_back = ahead <= 0.0 || (back > 0.0 && abs(back + point.z) < abs(ahead + point.z));
     if (takes_back && back <= 0.0) return vec3(aside, 0.0);
     return takes_back ? point - point_at(here - aside, back) : point_at(here + aside, ahead) - point;
@@ -45,28 +51,46 @@ const kSurface = /* glsl */ `
 `;
 
 const kLight = /* glsl */ `
-  vec3 light_of(vec3 normal, vec3 ray, vec4 sum, float window_depth) {
-    vec3 colour = sum.rgb / sum.w;
-    vec2 bent = at - normal.xy * 0.05 * min(sum.w / clarity, 1.0);
-    bent = clamp(bent, 0.001, 0.999);
+  ${kEnvironment}
+  ${kSunlight}
+
+  /** Returns the scene behind the liquid along the refracted ray; \`inside\` [m] is in the liquid. */
+  vec3 refracted(vec3 point, vec3 ray, vec3 normal, float inside, float front) {
+    vec3 way = refract(ray, normal, 0.75);
+    vec4 clip = projectionMatrix * vec4(point + min(inside, 12.0 * radius) * way, 1.0);
+    vec2 bent = clamp(0.5 + 0.5 * clip.xy / clip.w, 0.001, 0.999);
     // Objects in front of the liquid are not refracted.
-    if (texture(behind_depth, bent).r < window_depth) bent = at;
-    vec3 through = texture(behind, bent).rgb;
+    if (texture(behind_depth, bent).r < front) bent = at;
+    return texture(behind, bent).rgb;
+  }
+
+  vec3 light_of(vec3 point, vec3 normal, vec4 sum, float foam, float front) {
+    vec3 ray = normalize(point);
     mat3 to_world = transpose(mat3(viewMatrix));
     vec3 n = to_world * normal;
-    vec3 bounced = to_world * reflect(ray, normal);
+    vec3 world = eye + to_world * point;
+    vec3 colour = sum.rgb / sum.w;
     float deep = sum.w / clarity;
-    vec3 passed = pow(clamp(colour, 0.12, 0.9), vec3(0.9 * deep)) * (1.0 - paint);
-    float sun = 0.5 + 0.5 * dot(n, ${kSun});
-    vec3 pale = mix(colour, vec3(dot(colour, vec3(0.2, 0.6, 0.2)) + 0.25), 0.25);
-    vec3 own = mix(pale, colour, paint) * mix(0.55, 1.2, sun * sun);
-    float murk = 1.0 - (1.0 - max(paint, 0.2)) * exp(-0.75 * deep) * (1.0 - paint);
-    vec3 body = through * passed * mix(1.0, 0.55, murk) + own * murk * mix(0.75, 0.95, paint);
+    float shade = sunlight(world, n);
+    float toward = max(dot(n, ${kSun}), 0.0) * shade;
+    float sky = 0.5 + 0.5 * n.z;
+
+    vec3 through = refracted(point, ray, normal, sum.w, front);
+    vec3 passed = pow(clamp(colour, 0.03, 0.95), vec3(1.3 * deep)) * (1.0 - paint);
+    // Light that small particles and bubbles in the liquid scatter.
+    float murk = 1.0 - (1.0 - max(paint, 0.08)) * exp(-0.9 * deep) * (1.0 - paint);
+    vec3 pale = mix(colour, vec3(dot(colour, vec3(0.2, 0.6, 0.2)) + 0.15), 0.1);
+    vec3 own = mix(pale, colour, paint) * (0.25 + 0.30 * sky + 0.70 * toward);
+    vec3 body = through * passed * (1.0 - 0.5 * murk) + own * murk * mix(0.8, 1.0, paint);
+
     float facing = clamp(dot(normal, -ray), 0.0, 1.0);
-    float mirror = 0.02 + 0.98 * pow(1.0 - facing, 5.0);
-    vec3 sky = mix(sky_low, sky_high, smoothstep(-0.2, 0.7, bounced.z));
-    float shine = pow(max(dot(bounced, ${kSun}), 0.0), 120.0);
-    return mix(body, sky, mirror * mix(0.85, 0.4, paint)) + 0.9 * shine * (1.0 - 0.6 * paint);
+    float mirror = (0.05 + 0.95 * pow(1.0 - facing, 4.0)) * mix(1.0, 0.4, paint);
+    vec3 bounced = reflect(to_world * ray, n);
+    vec3 around = environment(bounced, 0.05);
+    float shine = pow(max(dot(bounced, ${kSun}), 0.0), 250.0);
+    vec3 light = mix(body, around, mirror) + 1.6 * shine * shade * (1.0 - 0.6 * paint);
+    vec3 white = vec3(0.93, 0.96, 0.98) * (0.45 + 0.25 * sky + 0.35 * toward);
+    return mix(light, white, foam * (1.0 - paint));
   }
 
   void main() {
@@ -74,14 +98,24 @@ const kLight = /* glsl */ `
     float window_depth = texture(behind_depth, at).r;
     vec3 light = scene.rgb;
     ivec2 here = ivec2(at * vec2(textureSize(depth, 0)));
-    float away = depth_at(here);
+    vec4 surface = surface_at(here);
     vec4 sum = texture(thickness, at);
-    if (away > 0.0 && sum.w > 0.0) {
-      vec4 clip = projectionMatrix * vec4(point_at(here, away), 1.0);
+    // One pixel of the outline is partly covered.
+    float edge = max(0.5 * fwidth(surface.g), 1e-3);
+    float cover = smoothstep(${kOutline} - edge, ${kOutline} + edge, surface.g);
+    if (surface.r > 0.0 && cover > 0.0 && sum.w > 0.0) {
+      vec3 point = point_at(here, surface.r);
+      vec4 clip = projectionMatrix * vec4(point, 1.0);
       float front = 0.5 * clip.z / clip.w + 0.5;
       if (front < window_depth) {
-        vec3 wet = light_of(normal_at(here, away), normalize(ray_at(at)), sum, front);
-        light = mix(light, wet, smoothstep(0.0, 0.5 * radius, sum.w));
+        sum /= min(max(surface.g, ${kOutline}) + 0.1, 1.0); // the blur has spread the edge
+        vec3 normal = normal_at(here, surface.r);
+        if (shows_normals) {
+          gl_FragDepth = front;
+          gl_FragColor = vec4(0.5 + 0.5 * transpose(mat3(viewMatrix)) * normal, 1.0);
+          return;
+        }
+        light = mix(light, light_of(point, normal, sum, surface.b, front), cover);
         window_depth = front;
       }
     }
@@ -92,21 +126,22 @@ const kLight = /* glsl */ `
 `;
 
 /** Composes the liquid and the scene behind it; writes the depths of both. */
-export function fluidCompositeMaterial(): ShaderMaterial {
+export function fluidCompositeMaterial(sun: SunUniforms): ShaderMaterial {
   return new ShaderMaterial({
     vertexShader: kScreenVertexShader,
     fragmentShader: kSurface + kLight,
     uniforms: {
+      ...sun,
       behind: { value: null },
       behind_depth: { value: null },
       depth: { value: null },
       thickness: { value: null },
-      projectionMatrixInverse: { value: null },
+      projectionMatrixInverse: { value: new Matrix4() },
+      eye: { value: new Vector3() },
       clarity: { value: 1 },
       paint: { value: 0 },
       radius: { value: 1 },
-      sky_low: { value: new Color() },
-      sky_high: { value: new Color() },
+      shows_normals: { value: false },
     },
   });
 }

@@ -1,5 +1,5 @@
-import { AddEquation, CustomBlending, GLSL3, OneFactor, ShaderMaterial } from 'three';
-import { kImpostorHit, kImpostorVertexShader } from '../particles/impostor';
+import { AddEquation, CustomBlending, GLSL3, MaxEquation, OneFactor, ShaderMaterial } from 'three';
+import { kImpostorHit, kImpostorVertexShader, kPlaceOfParticle } from '../particles/impostor';
 import type { BodyUniforms } from '../particles/impostor';
 import type { BehindUniforms } from './fluid_pass';
 
@@ -7,35 +7,104 @@ const kDepth = /* glsl */ `
     if (inside <= 0.0) discard;
     vec3 point = (along - extent * sqrt(inside)) * ray;
     gl_FragDepth = depth_of(point);
-    depth = -point.z;
+    // The blur of the outline removes no isolated drops.
+    nearest = vec4(-point.z, 1.0 + lone, foam, 0.0);
   }
 `;
 
 /** Drawn radius / particle radius. The spheres overlap and form a closed surface. */
 const kSize = 1.4;
 
-/** Volume of a drawn sphere / volume of a particle's cube, two radii wide. */
-const kShare = 8 / ((4 / 3) * Math.PI * kSize ** 3);
+/** Radius of a blurred particle / particle radius. It is large, so that particles do not appear. */
+const kBlurSize = 2.6;
 
-/** The length of the ray in the sphere in front of the scene; it weights the colour. */
+/**
+ * The length of the ray in a blurred particle, in front of the scene; it weights the colour. The blur
+ * is a normal distribution of the volume of a cube, two particle radii wide.
+ */
 const kThickness = /* glsl */ `
     if (inside <= 0.0) discard;
-    float half_way = extent * sqrt(inside);
+    float particle = extent / ${kBlurSize};
     float window_depth = textureLod(behind_depth, gl_FragCoord.xy * texel, 0.0).r;
     float eye_depth = projectionMatrix[3][2] / (2.0 * window_depth - 1.0 + projectionMatrix[2][2]);
-    float before = eye_depth / -ray.z;
-    float through = clamp(before - (along - half_way), 0.0, 2.0 * half_way);
-    sum = vec4(base, 1.0) * share * density * through;
+    float before = clamp(0.5 + 0.5 * (eye_depth / -ray.z - along) / particle, 0.0, 1.0);
+    float through = 1.2732 * particle * exp(-0.5 * dot(miss, miss) / (particle * particle));
+    sum = vec4(base, 1.0) * density * before * through;
   }
 `;
 
-/** Writes the view distance of the nearest point of each sphere [m]. */
+/** Writes the view distance of the nearest point of each sphere [m], coverage and foam. */
 export function fluidDepthMaterial(body: BodyUniforms, radius: number): ShaderMaterial {
   return new ShaderMaterial({
     glslVersion: GLSL3,
     vertexShader: kImpostorVertexShader,
-    fragmentShader: `out float depth;\n${kImpostorHit}${kDepth}`,
+    fragmentShader: `out vec4 nearest;\nflat in float foam;\nflat in float lone;\n${kImpostorHit}${kDepth}`,
     uniforms: { ...body, radius: { value: kSize * radius } },
+  });
+}
+
+const kShadow = /* glsl */ `
+  in vec2 spot;
+  in vec3 base;
+  in float near;
+  flat in vec2 matter;
+  out vec4 sum;
+  uniform float clarity;
+
+  void main() {
+    float away2 = dot(spot, spot);
+    if (away2 >= 1.0) discard;
+    float through = 1.2732 * matter.x * exp(-0.5 * away2 * ${kBlurSize * kBlurSize});
+    vec3 optical = -log(clamp(base, 0.03, 0.95)) * matter.y * through / clarity;
+    sum = vec4(optical, away2 < 0.3 ? 1.0 - near : 0.0);
+  }
+`;
+
+/** A square for each particle that faces the sun. */
+const kShadowPlace = /* glsl */ `
+  ${kPlaceOfParticle}
+  uniform float radius;
+  out vec2 spot;
+  out vec3 base;
+  out float near;
+  /** Radius and density. */
+  flat out vec2 matter;
+
+  void main() {
+    Body body = this_body();
+    float size = radius_of_body(radius);
+    matter = vec2(size / ${kBlurSize}, density_of_body());
+    vec3 world = (body.to_world * vec4(place_of_particle(), 1.0)).xyz;
+    vec4 center_in_view = viewMatrix * vec4(world, 1.0);
+    spot = position.xy;
+    base = body.colour;
+    gl_Position = projectionMatrix * (center_in_view + vec4(size * position.xy, 0.0, 0.0));
+    near = 0.5 * gl_Position.z + 0.5;
+    if (is_clipped(world)) gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside of the picture
+  }
+`;
+
+/**
+ * Sums the optical depth of liquids from the sun, for each colour. The alpha channel has the point
+ * that is nearest to the sun: 1 - its depth in the map.
+ */
+export function fluidShadowMaterial(
+  body: BodyUniforms,
+  radius: number,
+  behind: BehindUniforms,
+): ShaderMaterial {
+  return new ShaderMaterial({
+    glslVersion: GLSL3,
+    vertexShader: kShadowPlace,
+    fragmentShader: kShadow,
+    uniforms: { ...body, clarity: behind.clarity, radius: { value: kBlurSize * radius } },
+    depthTest: false,
+    depthWrite: false,
+    blending: CustomBlending,
+    blendEquation: AddEquation,
+    blendEquationAlpha: MaxEquation,
+    blendSrc: OneFactor,
+    blendDst: OneFactor,
   });
 }
 
@@ -48,8 +117,8 @@ export function fluidThicknessMaterial(
   return new ShaderMaterial({
     glslVersion: GLSL3,
     vertexShader: kImpostorVertexShader,
-    fragmentShader: `out vec4 sum;\nuniform sampler2D behind_depth;\nuniform vec2 texel;\nuniform float share;\nuniform float density;\n${kImpostorHit}${kThickness}`,
-    uniforms: { ...body, ...behind, radius: { value: kSize * radius }, share: { value: kShare } },
+    fragmentShader: `out vec4 sum;\nuniform sampler2D behind_depth;\nuniform vec2 texel;\nflat in float density;\n${kImpostorHit}${kThickness}`,
+    uniforms: { ...body, ...behind, radius: { value: kBlurSize * radius } },
     depthTest: false,
     depthWrite: false,
     blending: CustomBlending,

@@ -1,18 +1,25 @@
 import {
+  Color,
   DepthTexture,
   FloatType,
   HalfFloatType,
   NearestFilter,
-  RedFormat,
   Scene,
   UnsignedIntType,
   Vector2,
   WebGLRenderTarget,
 } from 'three';
-import type { Color, IUniform, Layers, PerspectiveCamera, WebGLRenderer } from 'three';
+import type {
+  IUniform,
+  Layers,
+  Mesh,
+  PerspectiveCamera,
+  ShaderMaterial,
+  WebGLRenderer,
+} from 'three';
 import { screenMesh } from '../base/screen';
 import { kLayers } from '../base/layers';
-import type { Theme } from '../base/theme';
+import type { SunUniforms } from '../base/sun_uniforms';
 import { fluidCompositeMaterial } from './fluid_composite';
 import { smoothingMaterial } from './smoothing';
 
@@ -27,10 +34,12 @@ export interface BehindUniforms {
   behind_depth: IUniform<DepthTexture | null>;
   /** 1 / size of the thickness texture. */
   texel: IUniform<Vector2>;
+  /** See FluidLook. */
+  clarity: IUniform<number>;
 }
 
 export function behindUniforms(): BehindUniforms {
-  return { behind_depth: { value: null }, texel: { value: new Vector2() } };
+  return { behind_depth: { value: null }, texel: { value: new Vector2() }, clarity: { value: 1 } };
 }
 
 /** The appearance of a fluid. */
@@ -41,6 +50,8 @@ export interface FluidLook {
   clarity: number;
   /** Opacity: 0 for clear water, 1 for paint, which shows coloured quantities. */
   paint: number;
+  /** Whether colours are the normals of the surface: (1 + n) / 2 in world axes. */
+  showsNormals: boolean;
 }
 
 /**
@@ -62,14 +73,19 @@ export class FluidPass {
   });
   private readonly smoothing = smoothingMaterial();
   private readonly smoother = screenMesh(this.smoothing);
-  private readonly composite = fluidCompositeMaterial();
-  private readonly result = screenMesh(this.composite);
+  private readonly composite: ShaderMaterial;
+  private readonly result: Mesh;
   private readonly screen = new Scene();
   private readonly size = new Vector2();
   /** The maximum number of rows of the textures. Photos have more than moving pictures. */
   mostRows = kMostRows;
 
-  constructor(private readonly uniforms: BehindUniforms) {
+  constructor(
+    private readonly uniforms: BehindUniforms,
+    sun: SunUniforms,
+  ) {
+    this.composite = fluidCompositeMaterial(sun);
+    this.result = screenMesh(this.composite);
     this.screen.add(this.smoother, this.result);
     uniforms.behind_depth.value = this.behind.depthTexture;
     const { uniforms: to } = this.composite;
@@ -79,11 +95,6 @@ export class FluidPass {
     to.thickness!.value = this.thickness.texture;
   }
 
-  paint(look: Theme): void {
-    (this.composite.uniforms.sky_low!.value as Color).copy(look.skyLow);
-    (this.composite.uniforms.sky_high!.value as Color).copy(look.skyHigh);
-  }
-
   /** Returns the target that a mesh of these layers is drawn to; null: the canvas. */
   targetOf(layers: Layers): WebGLRenderTarget | null {
     if (layers.isEnabled(kLayers.fluidDepth)) return this.depths[0];
@@ -91,8 +102,14 @@ export class FluidPass {
     return layers.isEnabled(kLayers.marks) ? null : this.behind;
   }
 
-  /** Draws the scene with its liquids to the canvas. */
-  draw(renderer: WebGLRenderer, scene: Scene, camera: PerspectiveCamera, look: FluidLook): void {
+  /** Draws the scene with its liquids to the canvas. `usual` is the distance of the scene [m]. */
+  draw(
+    renderer: WebGLRenderer,
+    scene: Scene,
+    camera: PerspectiveCamera,
+    look: FluidLook,
+    usual: number,
+  ): void {
     this.resize(renderer);
     renderer.setRenderTarget(this.behind);
     this.drawLayer(renderer, scene, camera, kLayers.scene);
@@ -102,13 +119,13 @@ export class FluidPass {
     this.drawLayer(renderer, scene, camera, kLayers.fluidDepth);
     renderer.setRenderTarget(this.thickness);
     this.drawLayer(renderer, scene, camera, kLayers.fluidThickness);
-    this.smooth(renderer, camera, look.radius);
+    this.smooth(renderer, camera, look.radius, usual);
     renderer.setClearColor(clearColour, 1);
     this.compose(renderer, camera, look);
     this.drawMarks(renderer, scene, camera);
   }
 
-  private readonly clearColour = this.composite.uniforms.sky_low!.value.clone() as Color;
+  private readonly clearColour = new Color();
 
   private resize(renderer: WebGLRenderer): void {
     const { x, y } = renderer.getDrawingBufferSize(this.size);
@@ -132,15 +149,22 @@ export class FluidPass {
     camera.layers.set(kLayers.scene);
   }
 
-  private smooth(renderer: WebGLRenderer, camera: PerspectiveCamera, radius: number): void {
+  private smooth(
+    renderer: WebGLRenderer,
+    camera: PerspectiveCamera,
+    radius: number,
+    usual: number,
+  ): void {
     const [first, second] = this.depths;
     const { uniforms } = this.smoothing;
     this.smoother.visible = true;
     this.result.visible = false;
     uniforms.radius!.value = radius;
     uniforms.rows_per_slope!.value = 0.5 * first.height * camera.projectionMatrix.elements[5]!;
-    for (const size of kSmoothing) {
-      uniforms.sigma!.value = size * radius;
+    uniforms.usual!.value = usual;
+    for (const [n, size] of kSmoothing.entries()) {
+      uniforms.sigma!.value = size;
+      uniforms.blurs_outline!.value = n === 0;
       for (const isAcross of [true, false]) {
         uniforms.depth!.value = (isAcross ? first : second).texture;
         (uniforms.direction!.value as Vector2).set(isAcross ? 1 : 0, isAcross ? 0 : 1);
@@ -153,8 +177,10 @@ export class FluidPass {
   private compose(renderer: WebGLRenderer, camera: PerspectiveCamera, look: FluidLook): void {
     const { uniforms } = this.composite;
     uniforms.projectionMatrixInverse!.value = camera.projectionMatrixInverse;
+    uniforms.eye!.value = camera.position;
     uniforms.clarity!.value = look.clarity;
     uniforms.paint!.value = look.paint;
+    uniforms.shows_normals!.value = look.showsNormals;
     uniforms.radius!.value = look.radius;
     this.smoother.visible = false;
     this.result.visible = true;
@@ -173,7 +199,6 @@ export class FluidPass {
 function depthTarget(depthBuffer: boolean): WebGLRenderTarget {
   return new WebGLRenderTarget(1, 1, {
     type: FloatType,
-    format: RedFormat,
     minFilter: NearestFilter,
     magFilter: NearestFilter,
     depthBuffer,

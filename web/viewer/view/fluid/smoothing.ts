@@ -7,49 +7,76 @@ const kMostSteps = 36;
 /** Larger depth differences, in particle radii, belong to another sheet of liquid. */
 const kRange = 8;
 
+/** Width of the blur of the outline [particle radii]; it removes the outlines of particles. */
+const kOutline = 0.8;
+
 const kFragmentShader = /* glsl */ `
   in vec2 at;
-  out float smoothed;
+  out vec4 smoothed;
   uniform sampler2D depth;
   uniform vec2 direction;
   uniform float sigma;
   uniform float radius;
   uniform float rows_per_slope;
+  /** The distance of pixels without liquid, for the width of the filter [m]. */
+  uniform float usual;
+  uniform bool blurs_outline;
 
-  float depth_at(ivec2 place) {
+  vec4 texel_at(ivec2 place) {
     ivec2 last = textureSize(depth, 0) - 1;
-    return texelFetch(depth, clamp(place, ivec2(0), last), 0).r;
+    return texelFetch(depth, clamp(place, ivec2(0), last), 0);
   }
 
   void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
-    float middle = depth_at(here);
-    smoothed = middle;
-    if (middle <= 0.0) return;
-    float spread = max(sigma * rows_per_slope / middle, 0.5);
+    vec4 middle = texel_at(here);
+    bool is_wet = middle.r > 0.0;
+    float rows = radius * rows_per_slope / (is_wet ? middle.r : usual);
+    float spread = max(sigma * rows, 0.5);
+    float edge = max(${kOutline} * rows, 0.5);
     int steps = min(int(ceil(1.8 * spread)), ${kMostSteps});
     float narrow = ${kRange}.0 * radius;
-    float near = middle - narrow;
-    float far = middle + narrow;
-    float sum = middle;
-    float weights = 1.0;
+    float near = is_wet ? middle.r - narrow : 0.0;
+    float far = is_wet ? middle.r + narrow : 1e9;
+    float weights = is_wet ? 1.0 : 0.0;
+    float sum = weights * middle.r;
+    float foam = weights * middle.b;
+    float cover = middle.g;
+    float covers = 1.0;
     ivec2 aside = ivec2(direction);
     for (int i = 1; i <= steps; ++i) {
-      float a = depth_at(here + i * aside);
-      float b = depth_at(here - i * aside);
-      // Both samples or none, so that an edge on one side does not displace the surface.
-      if (min(a, b) <= 0.0 || min(a, b) < near) continue;
+      vec4 a = texel_at(here + i * aside);
+      vec4 b = texel_at(here - i * aside);
       float weight = exp(-0.5 * float(i * i) / (spread * spread));
-      sum += weight * (min(a, far) + min(b, far));
+      float part = exp(-0.5 * float(i * i) / (edge * edge));
+      cover += part * (a.g + b.g);
+      covers += 2.0 * part;
+      if (!is_wet) {
+        // Continues the surface beyond its outline.
+        vec2 used = weight * step(1e-6, vec2(a.r, b.r));
+        sum += used.x * a.r + used.y * b.r;
+        foam += used.x * a.b + used.y * b.b;
+        weights += used.x + used.y;
+        continue;
+      }
+      // Both samples or none, so that an edge on one side does not displace the surface.
+      float nearest = min(a.r, b.r);
+      if (nearest <= 0.0 || nearest < near) continue;
+      sum += weight * (min(a.r, far) + min(b.r, far));
+      foam += weight * (a.b + b.b);
       weights += 2.0 * weight;
-      near = min(near, min(a, b) - narrow);
-      if (max(a, b) < far) far = max(far, max(a, b) + narrow);
+      near = min(near, nearest - narrow);
+      if (max(a.r, b.r) < far) far = max(far, max(a.r, b.r) + narrow);
     }
-    smoothed = sum / weights;
+    vec2 surface = weights > 0.0 ? vec2(sum, foam) / weights : vec2(0.0);
+    smoothed = vec4(surface.x, blurs_outline ? cover / covers : middle.g, surface.y, 0.0);
   }
 `;
 
-/** Smooths depths along rows or columns. Preserves steps between sheets of liquid. */
+/**
+ * Smooths distance, coverage and foam (the channels r, g and b) along rows or columns. Preserves
+ * steps between sheets of liquid, and continues the distance beyond their outlines.
+ */
 export function smoothingMaterial(): ShaderMaterial {
   return new ShaderMaterial({
     vertexShader: kScreenVertexShader,
@@ -61,6 +88,8 @@ export function smoothingMaterial(): ShaderMaterial {
       sigma: { value: 1 },
       radius: { value: 1 },
       rows_per_slope: { value: 1 },
+      usual: { value: 1 },
+      blurs_outline: { value: true },
     },
     depthTest: false,
     depthWrite: false,

@@ -28,9 +28,14 @@ export const kBody = /* glsl */ `
     return texelFetch(body_table, ivec2(n, int(row) - 1), 0);
   }
 
-  /** The radius of the body's particles; \`own\` is that of the mesh. */
+  /** The radius of the body's particles; \`own\` is that of the mesh, relative to the table's. */
   float radius_of_body(float own) {
-    return row < 0.5 ? own : entry(5).w;
+    return row < 0.5 ? own : own * entry(5).w;
+  }
+
+  /** The absorption of a liquid relative to the reference of the scene; see FluidLook.clarity. */
+  float density_of_body() {
+    return row < 0.5 ? 1.0 : entry(6).w;
   }
 
   Body this_body() {

@@ -24,12 +24,15 @@ export class BodyTable {
     this.uniforms.body_table.value = this.texture;
   }
 
-  /** Writes row 0, 1, … `length` is the body's longest side, `radius` that of its particles [m]. */
+  /**
+   * Writes row 0, 1, … `length` is the body's longest side, `radius` that of its particles [m]. A
+   * liquid has an absorption `density`, relative to the reference of the scene.
+   */
   write(
     row: number,
     { elements: m }: Matrix4,
     body: BodyUniforms,
-    { length, radius }: { length: number; radius: number },
+    { length, radius, density = 1 }: { length: number; radius: number; density?: number },
   ): void {
     const { roughness, metalness, variant, colour, colour_source, linear, angular } = body;
     const { r, g, b } = colour.value;
@@ -41,7 +44,7 @@ export class BodyTable {
       [r, g, b, colour_source.value],
       [m[12], m[13], m[14], length],
       [v.x, v.y, v.z, radius],
-      [w.x, w.y, w.z, 0],
+      [w.x, w.y, w.z, density],
     ];
     this.values.set(texels.flat(), kTexels * kValues * row);
   }

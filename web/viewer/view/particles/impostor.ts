@@ -19,8 +19,6 @@ export interface BodyUniforms extends LookUniforms {
   metalness: IUniform<number>;
   /** A number that differs between bodies, 0 to 1. */
   variant: IUniform<number>;
-  /** Of a liquid: absorption relative to the scene's reference; see FluidLook.clarity. */
-  density: IUniform<number>;
   colour_source: IUniform<number>;
   value_quantum: IUniform<number>;
   /** Rigid bodies: velocity of the centre [m/s] and angular velocity [rad/s], world axes. */
@@ -37,7 +35,6 @@ export function bodyUniforms(colour: Color, look: LookUniforms, moves: boolean):
     roughness: { value: 0.5 },
     metalness: { value: 0 },
     variant: { value: 0 },
-    density: { value: 1 },
     colour_source: { value: kColourSource.body },
     value_quantum: { value: 1 },
     linear: { value: new Vector3() },
@@ -71,6 +68,8 @@ export const kImpostorVertexShader = /* glsl */ `
   ${kPlaceOfParticle}
   in uint number;
   in int value;
+  /** Of a liquid: foam, and isolation from other particles, 0 to 1. */
+  in vec4 froth;
   uniform float radius;
   uniform float value_quantum;
   uniform vec2 value_range;
@@ -79,6 +78,9 @@ export const kImpostorVertexShader = /* glsl */ `
   flat out vec3 base;
   flat out float extent;
   flat out float rough;
+  flat out float foam;
+  flat out float lone;
+  flat out float density;
   out vec3 view_point;
 
   vec3 colour_at(Body body, vec3 arm) {
@@ -101,7 +103,10 @@ export const kImpostorVertexShader = /* glsl */ `
       gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside of the picture
       return;
     }
-    extent = radius_of_body(radius);
+    extent = radius_of_body(radius) * (1.0 - 0.3 * froth.y);
+    foam = froth.x;
+    lone = froth.y;
+    density = density_of_body();
     rough = body.matter.x;
     view_center = (viewMatrix * vec4(world, 1.0)).xyz;
     float distance2 = dot(view_center, view_center);

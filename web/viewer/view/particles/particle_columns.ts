@@ -7,6 +7,14 @@ const kGrowth = 1.5;
 export const kSquare = [-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0];
 export const kSquareTriangles = [0, 1, 2, 0, 2, 3];
 
+/** The columns of several bodies; see ParticleColumns. */
+export interface CopiedColumns {
+  center: Uint16Array;
+  before: Uint16Array;
+  number: Uint32Array;
+  value: Int32Array;
+}
+
 /** The grid of a frame. */
 type Grid = Pick<FrameHeader, 'origin' | 'quantum'>;
 
@@ -24,6 +32,7 @@ export class ParticleColumns {
   private numberColumn: InstancedBufferAttribute;
   private valueColumn: InstancedBufferAttribute;
   private grid: Grid | undefined;
+  private changes = 0;
 
   constructor(particles: number, local?: readonly number[]) {
     if (local) {
@@ -53,6 +62,20 @@ export class ParticleColumns {
     for (const geometry of this.geometries) geometry.dispose();
   }
 
+  /** Increases with each change of the columns. */
+  get version(): number {
+    return this.changes;
+  }
+
+  /** Copies the columns to those of several bodies, from particle `at` on. */
+  copyTo(to: CopiedColumns, at: number): void {
+    const { count } = this;
+    to.center.set(this.places[this.newest]!.array.subarray(0, 3 * count), 3 * at);
+    to.before.set(this.places[1 - this.newest]!.array.subarray(0, 3 * count), 3 * at);
+    to.number.set((this.numberColumn.array as Uint32Array).subarray(0, count), at);
+    to.value.set((this.valueColumn.array as Int32Array).subarray(0, count), at);
+  }
+
   /** The present number of particles, which can change for a liquid. */
   get count(): number {
     return this.geometry.instanceCount;
@@ -80,6 +103,7 @@ export class ParticleColumns {
     this.count = count;
     if (wasNumbered || this.numbers) this.showNumbers();
     this.grid = { origin: [...grid.origin], quantum: grid.quantum };
+    ++this.changes;
     this.attach();
   }
 
@@ -92,6 +116,7 @@ export class ParticleColumns {
   showValues(values: Int32Array): void {
     (this.valueColumn.array as Int32Array).set(values);
     this.valueColumn.needsUpdate = true;
+    ++this.changes;
   }
 
   /** Returns the index of a particle number; undefined if it is not shown. */

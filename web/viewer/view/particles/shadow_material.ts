@@ -7,6 +7,8 @@ export interface FloorUniforms {
   floor_z: { value: number };
   /** Bounds of the floor: min x, min y, max x, max y. */
   floor_bounds: { value: Vector4 };
+  /** Width of the floor's tiles [m]. */
+  tile: { value: number };
   /** The height above the floor from which particles cast no shadow [m]. */
   reach: { value: number };
   floor_colour: { value: Color };
@@ -17,6 +19,7 @@ export function floorUniforms(): FloorUniforms {
   return {
     floor_z: { value: 0 },
     floor_bounds: { value: new Vector4() },
+    tile: { value: 1 },
     reach: { value: 1 },
     floor_colour: { value: new Color() },
     shadow_colour: { value: new Color() },

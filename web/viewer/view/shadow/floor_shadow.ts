@@ -16,18 +16,25 @@ const kVertexShader = /* glsl */ `
 
 const kFragmentShader = /* glsl */ `
   in vec3 at;
+  uniform vec4 floor_bounds;
   uniform vec3 floor_colour;
   uniform vec3 shadow_colour;
+  uniform float tile;
   ${kSunlight}
 
   void main() {
     float dark = 0.85 * (1.0 - sunlight(at, vec3(0.0, 0.0, 1.0)));
-    gl_FragColor = vec4(mix(floor_colour, shadow_colour, dark), 1.0);
+    vec2 steps = (at.xy - floor_bounds.xy) / tile;
+    vec2 away = abs(fract(steps - 0.5) - 0.5) / max(fwidth(steps), vec2(0.012));
+    float joint = 1.0 - smoothstep(0.6, 1.6, min(away.x, away.y));
+    vec3 light = mix(floor_colour, shadow_colour, max(dark, 0.5 * joint));
+    // The sky lights the floor too.
+    gl_FragColor = vec4(light * mix(vec3(1.0), through_liquids(at), 0.6), 1.0);
     #include <colorspace_fragment>
   }
 `;
 
-/** Returns the shadow of the shadow map on the floor, drawn like shadowMaterial(). */
+/** Returns the floor's tiles and the shadows of the shadow map, drawn like shadowMaterial(). */
 export function floorShadow(floor: FloorUniforms, sun: SunUniforms): Mesh {
   const material = new ShaderMaterial({
     vertexShader: kVertexShader,

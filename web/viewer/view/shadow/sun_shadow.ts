@@ -1,6 +1,8 @@
 import {
   Box3,
+  Color,
   DepthTexture,
+  HalfFloatType,
   LessEqualCompare,
   LinearFilter,
   Matrix4,
@@ -42,13 +44,17 @@ const kVertexShader = /* glsl */ `
 /** From coordinates of the screen, -1 to 1, to those of a texture. */
 const kToTexture = new Matrix4().set(0.5, 0, 0, 0.5, 0, 0.5, 0, 0.5, 0, 0, 0.5, 0.5, 0, 0, 0, 1);
 
-/** The shadow map of the sun: the depths of all bodies in the layer of casters. */
+/**
+ * The shadow map of the sun: the depths of all bodies in the layer of casters, and the optical depth
+ * of liquids.
+ */
 export class SunShadow {
   private readonly camera = new OrthographicCamera();
   private readonly target: WebGLRenderTarget;
   private isStale = true;
   private readonly material: ShaderMaterial;
   private readonly fitted = new Box3();
+  private readonly clearColour = new Color();
 
   constructor(
     private readonly uniforms: SunUniforms,
@@ -57,7 +63,7 @@ export class SunShadow {
   ) {
     const { size, samples } = isSoftware ? kCoarse : kFine;
     uniforms.sun_samples.value = samples;
-    this.target = new WebGLRenderTarget(size, size);
+    this.target = new WebGLRenderTarget(size, size, { type: HalfFloatType });
     const depths = new DepthTexture(size, size, UnsignedIntType);
     depths.compareFunction = LessEqualCompare;
     depths.minFilter = depths.magFilter = LinearFilter;
@@ -66,7 +72,7 @@ export class SunShadow {
     this.camera.layers.set(kLayers.casters);
     this.material = new ShaderMaterial({
       vertexShader: kVertexShader,
-      fragmentShader: 'void main() { gl_FragColor = vec4(1.0); }',
+      fragmentShader: 'void main() { gl_FragColor = vec4(0.0); }',
       uniforms: { phase, body_table },
     });
   }
@@ -93,6 +99,7 @@ export class SunShadow {
       .multiply(camera.matrixWorldInverse);
     uniforms.sun_texel.value = (2 * radius) / this.target.width;
     uniforms.sun_blur.value = kBlur / 2;
+    uniforms.sun_range.value = 2 * radius;
   }
 
   /** Notifies that bodies have moved. */
@@ -104,13 +111,24 @@ export class SunShadow {
   draw(renderer: WebGLRenderer, scene: Scene): void {
     if (this.fitted.isEmpty() || !this.isStale) return;
     this.isStale = false;
-    this.uniforms.sun_map.value = null; // a texture must not be read while it is drawn
+    const { uniforms, camera, target } = this;
+    // Textures must not be read while they are drawn.
+    uniforms.sun_map.value = uniforms.sun_liquid.value = null;
+    const clearColour = renderer.getClearColor(this.clearColour);
+    renderer.setClearColor(0, 0);
+    renderer.setRenderTarget(target);
     scene.overrideMaterial = this.material;
-    renderer.setRenderTarget(this.target);
-    renderer.render(scene, this.camera);
-    renderer.setRenderTarget(null);
+    renderer.render(scene, camera);
     scene.overrideMaterial = null;
-    this.uniforms.sun_map.value = this.target.depthTexture;
+    renderer.autoClear = false;
+    camera.layers.set(kLayers.liquidShadow);
+    renderer.render(scene, camera);
+    camera.layers.set(kLayers.casters);
+    renderer.autoClear = true;
+    renderer.setRenderTarget(null);
+    renderer.setClearColor(clearColour, 1);
+    uniforms.sun_map.value = target.depthTexture;
+    uniforms.sun_liquid.value = target.texture;
   }
 
   dispose(): void {

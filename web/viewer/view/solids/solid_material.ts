@@ -6,7 +6,6 @@ import { kSunlight } from '../base/sun_uniforms';
 import type { SunUniforms } from '../base/sun_uniforms';
 import { kColourSource } from '../particles/impostor';
 import type { BodyUniforms } from '../particles/impostor';
-import type { FloorUniforms } from '../particles/shadow_material';
 import { kFinishShader } from './finishes';
 
 const kVertexShader = /* glsl */ `
@@ -54,7 +53,6 @@ const kFragmentShader = /* glsl */ `
   flat in int source;
   uniform vec4 clip_plane;
   uniform float opacity;
-  uniform float floor_z;
   ${kFinishShader}
   ${kEnvironment}
   ${kSunlight}
@@ -68,7 +66,7 @@ const kFragmentShader = /* glsl */ `
     // Colours of quantities have no pattern.
     if (source == ${kColourSource.body}) here = surface_at(grain, base);
     vec3 n = normalize(outward) * facing;
-    float shade = sunlight(world_point, n);
+    float shade = sunlight(world_point, n) * dot(through_liquids(world_point), vec3(0.3333));
     n = tilted(n, world_point, here.height * body_length, facing);
     vec3 eye = normalize(cameraPosition - world_point);
     // Near the floor, less light comes from below.
@@ -86,7 +84,6 @@ const kFragmentShader = /* glsl */ `
 
 /** The uniforms of the surroundings. */
 export interface Surroundings {
-  floor: FloorUniforms;
   sun: SunUniforms;
 }
 
@@ -104,7 +101,7 @@ export function grainOf(box: Box3): { toGrain: Matrix3; length: number } {
 /** Returns the material of a solid's surface. `length` is the body's longest side [m]. */
 export function solidMaterial(
   body: BodyUniforms,
-  { floor, sun }: Surroundings,
+  { sun }: Surroundings,
   length: number,
 ): ShaderMaterial {
   return new ShaderMaterial({
@@ -113,7 +110,6 @@ export function solidMaterial(
     uniforms: {
       ...body,
       ...sun,
-      floor_z: floor.floor_z,
       body_length: { value: length },
       opacity: { value: 1 },
     },

@@ -1,0 +1,114 @@
+import { Color, Mesh } from 'three';
+import type { BufferAttribute } from 'three';
+import { beforeEach, describe, expect, it } from 'vitest';
+import { BodyKind } from '../../../web/client/index';
+import { kLayers } from '../../../web/viewer/view/base/layers';
+import { sharedUniforms } from '../../../web/viewer/view/bodies/shared_uniforms';
+import { LiquidDrawing } from '../../../web/viewer/view/fluid/liquid_drawing';
+import { bodyUniforms } from '../../../web/viewer/view/particles/impostor';
+import { JoinedColumns } from '../../../web/viewer/view/particles/joined_columns';
+import { JoinedGrids } from '../../../web/viewer/view/particles/joined_grids';
+import type { GridParticles } from '../../../web/viewer/view/particles/joined_grids';
+import { ParticleColumns } from '../../../web/viewer/view/particles/particle_columns';
+import { sphereMaterial } from '../../../web/viewer/view/particles/sphere_material';
+
+const kGrid = { origin: [0, 0, 0] as [number, number, number], quantum: 1 };
+const shared = sharedUniforms();
+
+function show(columns: ParticleColumns, x: number[], numbers?: number[]): void {
+  const positions = Uint16Array.from(x.flatMap((at) => [at, 0, 0]));
+  const kind: typeof BodyKind.liquid = BodyKind.liquid;
+  const named = numbers && Uint32Array.from(numbers);
+  columns.show({ kind, body: 1, positions, numbers: named, attributes: [] }, kGrid);
+}
+
+function bodyOf(body: number, x: number[]): GridParticles {
+  const columns = new ParticleColumns(x.length);
+  show(columns, x);
+  const mesh = (): Mesh =>
+    new Mesh(columns.geometry, sphereMaterial(bodyUniforms(new Color(), shared.look, true), 1));
+  return { body, row: body + 10, columns, spheres: mesh(), spots: mesh(), valueQuantum: 1 };
+}
+
+/** Returns the values of the shown particles, the first of `step` each. */
+function valuesOf(joined: JoinedColumns, name: string, step = 1): number[] {
+  const { array } = joined.geometry.getAttribute(name) as BufferAttribute;
+  const { instanceCount } = joined.geometry;
+  return Array.from({ length: instanceCount }, (_, i) => array[step * i]!);
+}
+
+let joined: JoinedColumns;
+beforeEach(() => (joined = new JoinedColumns()));
+
+describe('JoinedColumns', () => {
+  it('has the particles of all bodies, with the rows of the table', () => {
+    const bodies = [bodyOf(1, [10, 20]), bodyOf(2, [30])];
+    show(bodies[0]!.columns, [14, 24]);
+    joined.update(bodies);
+    expect(valuesOf(joined, 'center', 3)).toEqual([14, 24, 30]);
+    expect(valuesOf(joined, 'before', 3)).toEqual([10, 20, 30]);
+    expect(valuesOf(joined, 'row')).toEqual([12, 12, 13]);
+    expect(valuesOf(joined, 'number')).toEqual([0, 1, 0]);
+  });
+
+  it('follows growing and shrinking bodies', () => {
+    const body = bodyOf(1, [10]);
+    for (const x of [[1, 2, 3, 4, 5, 6, 7], [8], [], [1, 2]]) {
+      show(body.columns, x, x);
+      joined.update([body]);
+      expect(valuesOf(joined, 'center', 3)).toEqual(x);
+      expect(valuesOf(joined, 'number')).toEqual(x);
+    }
+  });
+
+  it('copies columns after changes only', () => {
+    const bodies = [bodyOf(1, [10]), bodyOf(2, [30])];
+    expect(joined.update(bodies)).toBe(true);
+    expect(joined.update(bodies)).toBe(false);
+    bodies[1]!.columns.showValues(Int32Array.of(7));
+    expect(joined.update(bodies)).toBe(true);
+    expect(valuesOf(joined, 'value')).toEqual([0, 7]);
+    expect(joined.update(bodies.slice(0, 1))).toBe(true);
+    expect(joined.geometry.instanceCount).toBe(1);
+  });
+});
+
+describe('JoinedGrids', () => {
+  it('draws the visible particles of several bodies by one mesh, and of one by its own', () => {
+    const grids = new JoinedGrids(shared);
+    const bodies = [bodyOf(1, [10]), bodyOf(2, [30, 40]), bodyOf(3, [50])];
+    const isAlone = (): boolean[] =>
+      bodies.map(({ spheres }) => spheres.layers.isEnabled(kLayers.scene));
+    const joinedCounts = (): number[] =>
+      (grids.group.children as Mesh[])
+        .filter(({ visible }) => visible)
+        .map(({ geometry }) => (geometry as JoinedColumns['geometry']).instanceCount);
+    bodies[2]!.spheres.visible = false;
+    grids.update(bodies);
+    expect(joinedCounts()).toEqual([4, 3]); // spots, spheres
+    expect(isAlone()).toEqual([false, false, true]);
+    bodies[1]!.spheres.visible = bodies[1]!.spots.visible = false;
+    grids.update(bodies);
+    expect(joinedCounts()).toEqual([2]);
+    expect(isAlone()).toEqual([true, true, true]);
+  });
+});
+
+describe('LiquidDrawing', () => {
+  it.each([
+    ['fluid', 3],
+    ['splats', 2],
+    ['particles', 0],
+    ['surface', 0],
+  ] as const)('draws all liquids as %s by %i meshes', (style, count) => {
+    const drawing = new LiquidDrawing(shared);
+    const time = { quantum: 1, seconds: 0.02, height: 1 };
+    const liquids = [1, 2, 3].map((body) => ({ ...bodyOf(body, [10 * body]), radius: 1 }));
+    drawing.style = style;
+    drawing.update(liquids, time);
+    const { visible, children } = drawing.group;
+    expect(visible ? children.filter((mesh) => mesh.visible).length : 0).toBe(count);
+    drawing.update([], time);
+    expect(drawing.group.visible).toBe(false);
+  });
+});

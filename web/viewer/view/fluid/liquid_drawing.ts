@@ -1,0 +1,65 @@
+import { Color, Group, Mesh } from 'three';
+import type { BufferGeometry, ShaderMaterial } from 'three';
+import { kLayers } from '../base/layers';
+import type { LiquidStyle } from '../base/liquid_style';
+import type { LookUniforms } from '../colour/look_uniforms';
+import { bodyUniforms } from '../particles/impostor';
+import { JoinedColumns } from '../particles/joined_columns';
+import { splatDepthMaterial, splatMaterial } from '../particles/splat_material';
+import { fluidDepthMaterial, fluidShadowMaterial, fluidThicknessMaterial } from './fluid_particles';
+import type { BehindUniforms } from './fluid_pass';
+import { Froth } from './froth';
+import type { LiquidBody, LiquidTime } from './liquid_body';
+
+/** Draws all liquids together in the styles fluid and splats. */
+export class LiquidDrawing {
+  readonly group = new Group();
+  private readonly joined = new JoinedColumns();
+  private readonly froth = new Froth();
+  private readonly uniforms;
+  private readonly meshes: { mesh: Mesh; style: LiquidStyle }[] = [];
+  private drawn: LiquidStyle = 'splats';
+
+  constructor({ look, behind }: { look: LookUniforms; behind: BehindUniforms }) {
+    const uniforms = (this.uniforms = bodyUniforms(new Color(), look, true));
+    this.add(splatDepthMaterial(uniforms, 1), 'splats', 'splats', 1);
+    this.add(splatMaterial(uniforms, 1), 'splats', 'splats', 2);
+    this.add(fluidDepthMaterial(uniforms, 1), 'fluid', 'fluidDepth');
+    this.add(fluidThicknessMaterial(uniforms, 1, behind), 'fluid', 'fluidThickness');
+    this.add(fluidShadowMaterial(uniforms, 1, behind), 'fluid', 'liquidShadow');
+    this.style = this.drawn;
+  }
+
+  set style(style: LiquidStyle) {
+    this.drawn = style;
+    for (const { mesh, style: own } of this.meshes) mesh.visible = style === own;
+  }
+
+  /** Draws these liquids. Called before each picture. */
+  update(liquids: readonly LiquidBody[], time: LiquidTime): void {
+    const { drawn, joined } = this;
+    this.group.visible = liquids.length > 0 && (drawn === 'fluid' || drawn === 'splats');
+    if (!this.group.visible || !joined.update(liquids)) return;
+    this.uniforms.value_quantum.value = liquids[0]!.valueQuantum;
+    if (drawn === 'fluid') this.froth.follow(liquids, joined, time);
+  }
+
+  /** Forgets the foam, before another scene. */
+  clear(): void {
+    this.froth.clear();
+  }
+
+  private add(
+    material: ShaderMaterial,
+    style: LiquidStyle,
+    layer: keyof typeof kLayers,
+    order = 0,
+  ): void {
+    const mesh = new Mesh(this.joined.geometry as BufferGeometry, material);
+    mesh.frustumCulled = false; // the geometry's bounds do not contain its instances
+    mesh.renderOrder = order;
+    mesh.layers.set(kLayers[layer]);
+    this.group.add(mesh);
+    this.meshes.push({ mesh, style });
+  }
+}
