@@ -44,4 +44,12 @@ test('the page never waits for a compilation, and asks for one program per anima
   expect(state.asked).toBe(1);
   expect(advance()).toBe(true);
   expect(state).toEqual({ isDone: true, asked: 2, compiled: 2 });
+
+  // A mesh that is added after the start.
+  state.isDone = false;
+  scene.add(new Mesh(new BoxGeometry(), new MeshBasicMaterial()));
+  expect(advance()).toBe(false);
+  state.isDone = true;
+  expect(advance()).toBe(true);
+  expect(state).toEqual({ isDone: true, asked: 3, compiled: 3 });
 });

@@ -44,8 +44,7 @@ export class Stage {
   /** The share of the display's rows and columns in the present picture. */
   private scale = 1;
   private counted = { passes: 0, calls: 0 };
-  /** The compilation of shaders, until the page has started. */
-  private warmUp: WarmUp | undefined;
+  private readonly warmUp: WarmUp;
   private endWarmUp: (() => void) | undefined;
   /** The properties of the browser's graphics. */
   readonly graphics: Graphics;
@@ -119,7 +118,7 @@ export class Stage {
     this.invalidate();
   }
 
-  /** Resolves after the first picture with the present meshes. Later meshes are drawn at once. */
+  /** Resolves after the first picture with the present meshes. */
   warm(): Promise<void> {
     this.invalidate();
     return new Promise((resolve) => (this.endWarmUp = resolve));
@@ -291,16 +290,14 @@ export class Stage {
     // A picture that does not change is drawn once more in full resolution.
     const isLast = !stale && this.scale < 1 && at - this.drawnAt > kStillMs;
     if (!stale && !isLast) return;
-    if (this.warmUp?.advance(this.camera, (mesh) => this.targetOf(mesh)) === false) return;
+    if (!this.warmUp.advance(this.camera, (mesh) => this.targetOf(mesh))) return;
     if (isLast) this.setScale(1);
     else if (drewLast) this.setScale(this.resolution.scale);
     this.stale = false;
     this.drawnAt = at;
     if (stale) this.onDrawn(at, drewLast);
     this.drawNow();
-    if (!this.endWarmUp) return;
-    this.warmUp = undefined;
-    this.endWarmUp();
+    this.endWarmUp?.();
     this.endWarmUp = undefined;
   }
 

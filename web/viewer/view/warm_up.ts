@@ -8,13 +8,13 @@ interface Program {
 }
 
 /**
- * Compiles shaders while the page starts. The browser compiles in the background, and a picture
- * before the end would block the page.
+ * Compiles the shaders of new meshes. The browser compiles in the background, and a picture before
+ * the end would block the page.
  */
 export class WarmUp {
-  private readonly known = new Set<Material>();
+  private readonly known = new WeakSet<Material>();
   private readonly pending = new Set<Material>();
-  private readonly programs = new Set<Program>();
+  private readonly programs = new WeakSet<Program>();
   /** Passed when the graphics has executed all compilations. */
   private fence: WebGLSync | null = null;
 
@@ -40,14 +40,21 @@ export class WarmUp {
       renderer.compile(object, camera, scene);
     });
     renderer.setRenderTarget(null);
-    if (gl.isContextLost()) return true;
+    if (gl.isContextLost()) {
+      this.fence = null;
+      return true;
+    }
     if (pending.size > before) {
       gl.deleteSync(this.fence);
       this.fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
       gl.flush();
     }
     // Without KHR_parallel_shader_compile, every program is always "ready".
-    if (this.fence && gl.getSyncParameter(this.fence, gl.SYNC_STATUS) !== gl.SIGNALED) return false;
+    if (this.fence) {
+      if (gl.getSyncParameter(this.fence, gl.SYNC_STATUS) !== gl.SIGNALED) return false;
+      gl.deleteSync(this.fence);
+      this.fence = null;
+    }
     for (const material of pending) {
       const { currentProgram } = renderer.properties.get(material) as { currentProgram?: Program };
       if (currentProgram?.isReady() === false) continue;
