@@ -5,6 +5,7 @@
 
 #include "core/laws/vat_motion.h"
 #include "core/limits.h"
+#include "core/scene/interface_table.h"
 #include "core/scene/range_check.h"
 #include "core/simulation/connections.h"
 #include "core/simulation/simulation.h"

@@ -30,7 +30,7 @@ inline constexpr std::array kNamesOf<GuardEvent::Cause>{"non_finite", "outside_d
 /// Iterations of the solves that iterate until a tolerance is reached, summed over the solves of
 /// all steps.
 struct IterationCounts {
-  std::uint64_t contacts = 0;    ///< sweeps over the projected contacts, of the slowest island
+  std::uint64_t contacts = 0;    ///< sweeps over contacts and Newton steps, of the slowest island
   std::uint64_t damping = 0;     ///< products with the damping matrix
   std::uint64_t springs = 0;     ///< passes over the implicit springs of a body
   std::uint64_t elongation = 0;  ///< sweeps over the springs with limited elongation

@@ -8,6 +8,7 @@
 #include "core/contact/projection/contact_constraint.h"
 #include "core/contact/projection/contact_islands.h"
 #include "core/contact/projection/contact_newton.h"
+#include "core/contact/projection/sweep_progress.h"
 #include "core/support/parallel.h"
 
 namespace vat {
@@ -52,7 +53,8 @@ struct ContactSolve {
   /// Relaxes the contacts of each island in order and in reverse order, until no contact of the
   /// island changes. excess(contact) returns the separation speed above the required one [m/s].
   /// Islands are independent and may run on different threads. Returns whether the sweeps have
-  /// converged. If the sweeps of an island converge slowly, ContactNewton replaces some of them.
+  /// converged. If the sweeps of an island converge slowly, ContactNewton replaces the remaining
+  /// ones.
   /// The nonlinear conjugate gradient method of M. Silcowitz-Hansen, S. Niebe, K. Erleben, The
   /// Visual Computer 26 (2010) 893, accelerates the convergence. In this method, the change of a
   /// sweep is a gradient. While the gradients decrease, the next sweep starts at an extrapolation
@@ -65,48 +67,51 @@ struct ContactSolve {
     const std::size_t most =
         std::clamp<std::size_t>(10'000 / std::max<std::size_t>(constraints.size(), 1), 50, 1000);
     std::atomic<std::size_t> greatest = 0;
+    std::atomic<bool> all_solved = true;
     scratch.place_of_end.resize(model().free_count + rigid.size());
     scratch.blocks.resize((islands.count() + kIslandsPerBlock - 1) / kIslandsPerBlock);
     for_blocks<kIslandsPerBlock>(
         force_model.runner, islands.count(), [&](std::size_t begin, std::size_t end) {
           for (std::size_t island = begin; island < end; ++island) {
-            raise(greatest, sweep_island(constraints, islands[island], most, scratch,
-                                         begin / kIslandsPerBlock, excess));
+            const IslandResult result = sweep_island(constraints, islands[island], most, scratch,
+                                                     begin / kIslandsPerBlock, excess);
+            raise(greatest, result.iterations);
+            if (!result.is_solved) all_solved = false;
           }
         });
-    if (force_model.report != nullptr) {
-      force_model.report->iterations.contacts +=
-          2 * (greatest == kUnsolved ? most : greatest.load());
-    }
-    return greatest < kUnsolved;
+    if (force_model.report != nullptr) force_model.report->iterations.contacts += greatest;
+    return all_solved;
   }
 
  private:
-  static constexpr std::size_t kUnsolved = ~std::size_t{0};
+  struct IslandResult {
+    std::size_t iterations = 0;  ///< sweeps and Newton steps
+    bool is_solved = false;
+  };
   static void raise(std::atomic<std::size_t>& greatest, std::size_t value) {
     std::size_t known = greatest;
     while (known < value && !greatest.compare_exchange_weak(known, value)) {
     }
   }
-  /// Returns the number of rounds, each forward and back, or kUnsolved.
   template <class Excess>
-  std::size_t sweep_island(std::vector<ContactConstraint>& constraints,
-                           std::span<const Index> island, std::size_t most,
-                           ContactNewtonScratch& scratch, std::size_t block, Excess&& excess) {
+  IslandResult sweep_island(std::vector<ContactConstraint>& constraints,
+                            std::span<const Index> island, std::size_t most,
+                            ContactNewtonScratch& scratch, std::size_t block, Excess&& excess) {
     constexpr Real kTolerance = 1e-8;
-    constexpr std::size_t kFewRounds = 8;
     constexpr int kMaxRuns = 2;
+    // A prediction from fewer rounds than this part of the cost is not reliable enough.
+    constexpr std::size_t kPatience = 6;
+    ContactNewtonScratch::Block& own = scratch.blocks[block];
+    SweepProgress progress(kTolerance);
+    IslandResult result;
     int runs = 0;
-    std::size_t next_newton = ContactNewton::kNever;
+    Real last = 0;
     const auto relax = [&](ContactConstraint& contact) {
       const Real wanted = contact.push - excess(contact) / contact.mobility;
       const Real change = push(contact, std::max(Real{0}, wanted) - contact.push);
       return std::max(change, apply_friction(contact));
     };
-    ContactNewtonScratch::Block& own = scratch.blocks[block];
-    Real last = 0;
-    std::size_t last_round = most;
-    for (std::size_t round = 1; round <= last_round; ++round) {
+    for (std::size_t round = 1, last_round = most; round <= last_round; ++round) {
       Real change = 0;
       for (const Index c : island) constraints[c].gradient = -constraints[c].impulse();
       for (const Index c : island) change = std::max(change, relax(constraints[c]));
@@ -114,24 +119,29 @@ struct ContactSolve {
         const Index c = *it;
         change = std::max(change, relax(constraints[c]));
       }
-      if (change <= kTolerance) return round;
-      if (round == kFewRounds) {
+      result.iterations += 2;
+      result.is_solved = change <= kTolerance;
+      if (result.is_solved) break;
+      progress.add(change);
+      if (progress.has_prediction() && runs < kMaxRuns) {
         const std::size_t cost =
             own.newton.prepare(*this, constraints, island, scratch.place_of_end);
-        next_newton = std::max(round, cost);
-      }
-      if (round == next_newton) {
-        next_newton = ++runs < kMaxRuns ? 2 * round : ContactNewton::kNever;
-        last_round = std::max(most, 2 * round);
-        own.excess.clear();
-        for (const Index c : island) own.excess.push_back(excess(constraints[c]));
-        own.newton.run(*this, constraints, island, own.excess, scratch.place_of_end);
-        last = 0;
-        continue;
+        if (progress.rounds() >= cost || (kPatience * progress.rounds() >= cost &&
+                                          progress.rounds_left() > static_cast<Real>(cost))) {
+          own.excess.clear();
+          for (const Index c : island) own.excess.push_back(excess(constraints[c]));
+          result.iterations +=
+              own.newton.run(*this, constraints, island, own.excess, scratch.place_of_end);
+          ++runs;
+          last_round = std::max(most, 2 * round);
+          last = 0;
+          progress.restart();
+          continue;
+        }
       }
       last = extrapolate(constraints, island, last);
     }
-    return kUnsolved;
+    return result;
   }
   Vec3 velocity(const ContactEnd& end) const;
   Real mobility(const ContactEnd& end, const Vec3& direction) const;

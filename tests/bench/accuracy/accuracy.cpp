@@ -57,6 +57,13 @@ Status tolerances(const Options& options, TaskRunner* /*runner*/) {
   return write_tolerances(points, options.output);
 }
 
+Status accuracies(const Options& options, TaskRunner* /*runner*/) {
+  std::cout << "accuracies: cost and error against the requested accuracy" << std::endl;
+  const auto points = sweep_accuracies();
+  std::cout << to_markdown(accuracies_table(points)) << std::endl;
+  return write_accuracies(points, options.output);
+}
+
 Status growth(const Options& options, TaskRunner* /*runner*/) {
   std::cout << "growth: iterations of the solves of a step against the size" << std::endl;
   const auto results = options.quick ? sweep_growth(20, 1) : sweep_growth(100, 5);
@@ -82,6 +89,7 @@ struct Comparison {
 
 constexpr Comparison kComparisons[] = {{"solvers", &solvers},
                                        {"tolerances", &tolerances},
+                                       {"accuracies", &accuracies},
                                        {"growth", &growth},
                                        {"catalogue", &catalogue}};
 

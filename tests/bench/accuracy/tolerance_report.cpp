@@ -8,6 +8,7 @@ namespace vat::bench {
 
 namespace {
 
+using stability::AccuracyPoint;
 using stability::TolerancePoint;
 
 TolerancePoint measure_median(const char* scene, Real tolerance, Real seconds, int repetitions) {
@@ -61,6 +62,49 @@ LogPlot tolerances_plot(const std::vector<TolerancePoint>& points) {
     plot.series.push_back(series);
   }
   return plot;
+}
+
+std::vector<AccuracyPoint> sweep_accuracies() {
+  std::vector<AccuracyPoint> points;
+  for (const char* scene : stability::kAccuracyScenes) {
+    for (const Real accuracy : stability::all_accuracies()) {
+      points.push_back(stability::measure_accuracy(scene, accuracy));
+    }
+  }
+  return points;
+}
+
+Table accuracies_table(const std::vector<AccuracyPoint>& points) {
+  Table table{{"scene", "accuracy", "failed", "error", "steps", "evaluations", "iterations"}, {}};
+  for (const AccuracyPoint& point : points) {
+    table.rows.push_back({point.scene, point.accuracy, std::uint64_t{point.failed}, point.error,
+                          point.steps, point.evaluations, point.iterations});
+  }
+  return table;
+}
+
+LogPlot accuracies_plot(const std::vector<AccuracyPoint>& points) {
+  LogPlot plot{.title = "Requested accuracy",
+               .x_label = "accuracy",
+               .y_label = "evaluations of the forces and iterations of solves",
+               .series = {}};
+  for (const char* scene : stability::kAccuracyScenes) {
+    Series series{.label = scene, .points = {}, .colour = plot.series.size()};
+    for (const AccuracyPoint& point : points) {
+      if (point.scene == scene) {
+        series.points.push_back({point.accuracy, static_cast<Real>(point.work())});
+      }
+    }
+    plot.series.push_back(series);
+  }
+  return plot;
+}
+
+Status write_accuracies(const std::vector<AccuracyPoint>& points,
+                        const std::filesystem::path& folder) {
+  const Status done =
+      write_table(accuracies_table(points), folder, "accuracies", "# Requested accuracy");
+  return done ? write_plot(accuracies_plot(points), folder, "accuracies") : done;
 }
 
 Status write_tolerances(const std::vector<TolerancePoint>& points,

@@ -63,6 +63,7 @@ constexpr Content kContents[] = {
     {"methods", "accuracy", "cheapest", methods_table},
     {"solvers", "accuracy", "solvers", solvers_table},
     {"tolerances", "accuracy", "tolerances", tolerances_table},
+    {"accuracies", "accuracy", "accuracies", accuracies_rows_table},
     {"growth", "accuracy", "growth", growth_rows_table},
     {"catalogue", "accuracy", "catalogue", catalogue_rows_table},
     {"laws", "accuracy", "laws", laws_table},

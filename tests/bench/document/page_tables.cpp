@@ -172,6 +172,17 @@ Table tolerances_table(const Json& tolerances) {
   return table;
 }
 
+Table accuracies_rows_table(const Json& accuracies) {
+  Table table{{"scene", "accuracy", "error", "steps", "evaluations", "iterations"}, {}};
+  for (const Json& row : accuracies) {
+    table.rows.push_back({cell_text(row, "scene"), row.at("accuracy").get<Real>(),
+                          row.at("error").get<Real>(), row.at("steps").get<std::uint64_t>(),
+                          row.at("evaluations").get<std::uint64_t>(),
+                          row.at("iterations").get<std::uint64_t>()});
+  }
+  return table;
+}
+
 Table growth_rows_table(const Json& growth) {
   Table table{{"solve", "size", "value", "iterations per step"}, {}};
   for (const Json& row : growth) {

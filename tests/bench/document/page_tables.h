@@ -31,6 +31,8 @@ Table laws_table(const Json& laws);
 Table solvers_table(const Json& solvers);
 /// Density error and iterations by tolerance. Times are in the plot only.
 Table tolerances_table(const Json& tolerances);
+/// The rows of `vat_bench accuracy --case accuracies`.
+Table accuracies_rows_table(const Json& accuracies);
 /// Iterations of the solves of a step against the size of the problem.
 Table growth_rows_table(const Json& growth);
 /// Error and time of the scenes of the catalogue.
