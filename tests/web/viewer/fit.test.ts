@@ -1,5 +1,6 @@
 import { Box3, Vector3 } from 'three';
 import { describe, expect, it } from 'vitest';
+import { framedBox } from '../../../web/viewer/view/base/framed';
 import { nearestEye } from '../../../web/viewer/view/base/fit';
 import type { Seen } from '../../../web/viewer/view/base/fit';
 import { directionOf, firstDirection } from '../../../web/viewer/view/base/presets';
@@ -63,5 +64,32 @@ describe('firstDirection', () => {
       const { x, z } = directionTo(2, depth);
       expect(Math.min(x, z)).toBeGreaterThan(0.1);
     }
+  });
+});
+
+describe('framedBox', () => {
+  const boxOf = (
+    ...[x, y, z, toX, toY, toZ]: [number, number, number, number, number, number]
+  ): Box3 => new Box3(new Vector3(x, y, z), new Vector3(toX, toY, toZ));
+  const vat = boxOf(0, 0, 0, 10, 10, 5);
+
+  it.each([
+    ['a liquid at the side', boxOf(0, 0, 0, 2, 10, 2), true, boxOf(0, 0, 0, 10, 10, 2.4)],
+    ['a full vat', boxOf(0, 0, 0, 10, 10, 5), true, vat],
+    [
+      'a solid, which can roll by its height',
+      boxOf(4, 4, 0, 6, 5, 1),
+      false,
+      boxOf(3, 3, 0, 7, 6, 1.4),
+    ],
+    ['a solid in a corner', boxOf(0, 0, 0, 1, 1, 2), false, boxOf(0, 0, 0, 3, 3, 2.4)],
+    ['a solid outside of the vat', boxOf(20, 4, 0, 21, 5, 1), false, boxOf(0, 0, 0, 10, 10, 1.4)],
+    ['nothing', new Box3(), false, vat],
+  ])('shows the part of a vat with %s', (_, contents, hasLiquid, expected) => {
+    const { min, max } = framedBox(vat, contents, hasLiquid);
+    expect([...min, ...max].map((value) => Number(value.toFixed(9)))).toEqual([
+      ...expected.min,
+      ...expected.max,
+    ]);
   });
 });
