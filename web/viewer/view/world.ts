@@ -227,7 +227,7 @@ export class World {
 
   /** The box for the camera. */
   get framed(): Box3 {
-    return framedBox(this.seen, this.contents, this.liquids.length > 0);
+    return framedBox(this.seen, this.contents);
   }
 
   pick(ray: Ray): Picked | undefined {
