@@ -138,8 +138,8 @@ describe('the dam break in motion', () => {
     // Liquid deep in the column of water, and at its surface, where the pressure is zero. Larger
     // values are greener.
     const deeper = async (): Promise<number> =>
-      (await statistics({ left: 0.16, top: 0.6, right: 0.26, bottom: 0.66 })).green -
-      (await statistics({ left: 0.2, top: 0.36, right: 0.28, bottom: 0.4 })).green;
+      (await statistics({ left: 0.27, top: 0.62, right: 0.34, bottom: 0.7 })).green -
+      (await statistics({ left: 0.14, top: 0.36, right: 0.2, bottom: 0.38 })).green;
     await expect.poll(deeper, kInTime).toBeGreaterThan(30);
   });
 

@@ -137,7 +137,7 @@ export class LiveView {
   private show(frame: Frame): boolean {
     if (!this.view.show(frame)) return false;
     this.say(undefined);
-    this.view.stage.follow(this.view.world.bounds);
+    this.view.stage.follow(this.view.world.framed);
     if (this.pose) this.view.stage.pose = this.pose;
     this.pose = undefined;
     this.canvas.dataset.tick = String(frame.header.tick);

@@ -24,10 +24,10 @@ const kStep = 10;
 
 /** The looks as settings of the view. */
 const kLooks: Readonly<Record<string, string>> = {
-  default: 'liquid:fluid',
-  surface: 'liquid:surface,solids:skin',
-  splats: 'liquid:splats',
-  particles: 'liquid:particles,solids:particles',
+  default: 'liquid:fluid,orbit:off',
+  surface: 'liquid:surface,solids:skin,orbit:off',
+  splats: 'liquid:splats,orbit:off',
+  particles: 'liquid:particles,solids:particles,orbit:off',
 };
 /** A worker computes surfaces and skins during this time [ms]. */
 const kSurfacesMs = 1500;
@@ -73,7 +73,8 @@ async function advance(observer: Observer, ticks: number): Promise<void> {
   }
 }
 
-const folder = resolve(values.output);
+/** npm runs this in web/; relative paths refer to the folder of the command. */
+const folder = resolve(process.env.INIT_CWD ?? '.', values.output);
 mkdirSync(folder, { recursive: true });
 const server = new Server();
 await server.start();

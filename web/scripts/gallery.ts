@@ -26,7 +26,7 @@ const server = new Server();
 await server.start();
 const observer = await Observer.join(server.url);
 await observer.request('control.pause', {});
-const viewer = await Viewer.open(server.url, { viewport: kSize });
+const viewer = await Viewer.open(`${server.url}#view=liquid:fluid`, { viewport: kSize });
 await addStyle(viewer.page, kOnlyPicture);
 try {
   const chosen = process.argv.slice(2).filter((word) => !word.includes('/') && word !== '--');

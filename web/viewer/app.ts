@@ -360,7 +360,7 @@ export class App {
     const { header } = frame;
     this.connection.showFrame(header);
     this.whole.showFrame(header);
-    this.stage.follow(this.world.bounds);
+    this.stage.follow(this.world.framed);
     this.links.follow();
     if (this.linkedPose) this.stage.pose = this.linkedPose;
     this.linkedPose = undefined;

@@ -1,5 +1,6 @@
 import { Box3, Vector3 } from 'three';
 import { describe, expect, it } from 'vitest';
+import { framedBox } from '../../../web/viewer/view/base/framed';
 import { nearestEye } from '../../../web/viewer/view/base/fit';
 import type { Seen } from '../../../web/viewer/view/base/fit';
 import { directionOf, firstDirection } from '../../../web/viewer/view/base/presets';
@@ -63,5 +64,24 @@ describe('firstDirection', () => {
       const { x, z } = directionTo(2, depth);
       expect(Math.min(x, z)).toBeGreaterThan(0.1);
     }
+  });
+});
+
+describe('framedBox', () => {
+  const boxOf = (
+    ...[x, y, z, toX, toY, toZ]: [number, number, number, number, number, number]
+  ): Box3 => new Box3(new Vector3(x, y, z), new Vector3(toX, toY, toZ));
+  const vat = boxOf(0, 0, 0, 10, 10, 5);
+
+  it.each([
+    ['a body', boxOf(0, 0, 0, 2, 10, 2), boxOf(0, 0, 0, 10, 10, 2.4)],
+    ['a body below its top', boxOf(0, 0, 0, 10, 10, 4.8), vat],
+    ['nothing', new Box3(), vat],
+  ])('shows the part of a vat with %s', (_, contents, expected) => {
+    const { min, max } = framedBox(vat, contents);
+    expect([...min, ...max].map((value) => Number(value.toFixed(9)))).toEqual([
+      ...expected.min,
+      ...expected.max,
+    ]);
   });
 });

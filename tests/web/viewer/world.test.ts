@@ -71,3 +71,15 @@ it('shows nothing of another scene, though its bodies have the same numbers', ()
   world.describe(described(2, [1], 'another'));
   expect(at(world, 2)).toBeUndefined();
 });
+
+it('frames rigid bodies at their poses in the first frame', () => {
+  const world = new World(kTheme, sharedUniforms());
+  const description = described(1, []);
+  const body = { body: 1, name: 'ball', kind: 'rigid' as const, material: 'wood' };
+  const ball = { ...body, particles: 1, radius: 0.1, local_positions: [0, 0, 0] };
+  world.describe({ ...description, bodies: [ball] });
+  const pose = { position: [0.5, 0.5, 0.6], orientation: [1, 0, 0, 0] };
+  const { header } = frame(1, {});
+  world.show({ header, blocks: [{ kind: BodyKind.rigid, body: 1, ...pose }] } as unknown as Frame);
+  expect(world.framed.max.z).toBeCloseTo(0.6 + 0.1 + 0.08); // the top of the ball, and some space
+});

@@ -74,7 +74,7 @@ export class CameraControl {
     const { stage, world } = this.view;
     this.follow(undefined);
     stage.reframe();
-    stage.follow(world.bounds);
+    stage.follow(world.framed);
   }
 
   private follow(body: number | undefined): void {

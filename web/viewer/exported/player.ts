@@ -95,7 +95,7 @@ class Player {
 
   private show(frame: Frame): boolean {
     if (!this.view.show(frame)) return false;
-    this.view.stage.follow(this.view.world.bounds);
+    this.view.stage.follow(this.view.world.framed);
     this.bar.showTick(frame.header.tick);
     this.canvas.dataset.tick = String(frame.header.tick);
     return true;

@@ -19,6 +19,7 @@ import { LiquidDrawing } from './fluid/liquid_drawing';
 import type { Footprint } from './base/footprint';
 import { absorptionLengthOf, lookOf } from './base/appearance';
 import type { Look } from './base/appearance';
+import { framedBox } from './base/framed';
 import { Ground, roundLength } from './base/ground';
 import type { Theme } from './base/theme';
 import { Marks } from './marks/marks';
@@ -58,6 +59,8 @@ export class World {
   private looks: ReadonlyMap<string, Look> = new Map();
   /** The union of the vat's positions or, without a vat, the initial extent of the bodies. */
   private seen = new Box3();
+  /** The extent of the bodies in the first frame. */
+  private readonly contents = new Box3();
   private style: LiquidStyle = 'splats';
   private solids: Choice<'solids'> = 'shape';
   private colouring: Choice<'colour'> = 'material';
@@ -189,7 +192,7 @@ export class World {
       if (block.kind === BodyKind.vat) this.moveVat(block.offset);
       else this.showBlock(block, frame.header, seconds);
     }
-    if (this.seen.isEmpty()) this.settle();
+    if (this.contents.isEmpty()) this.settle();
     this.marks.follow(this.extent);
     return true;
   }
@@ -217,9 +220,14 @@ export class World {
     this.onValues(view.valueRange(values));
   }
 
-  /** The box for the camera. It includes all previous positions of a moving vat. */
+  /** The extent of the scene. It includes all previous positions of a moving vat. */
   get bounds(): Box3 {
     return this.seen;
+  }
+
+  /** The box for the camera. */
+  get framed(): Box3 {
+    return framedBox(this.seen, this.contents);
   }
 
   pick(ray: Ray): Picked | undefined {
@@ -362,14 +370,17 @@ export class World {
     );
   }
 
-  /** Sets the camera's box and the ground from the bodies if there is no vat. */
+  /** Measures the bodies in the first frame. Without a vat, they define the extent and the ground. */
   private settle(): void {
-    for (const view of this.bodies.values()) view.places.expand(this.seen);
-    if (!this.seen.isEmpty()) this.ground.fit(this.seen);
+    for (const view of this.bodies.values()) view.places.expand(this.contents);
+    if (!this.seen.isEmpty() || this.contents.isEmpty()) return;
+    this.seen.copy(this.contents);
+    this.ground.fit(this.seen);
   }
 
   private clear(): void {
     this.seen.makeEmpty();
+    this.contents.makeEmpty();
     this.drawing.clear();
     for (const view of this.bodies.values()) view.dispose();
     this.bodies = new Map();

@@ -166,6 +166,7 @@ export class BodyView {
   showPose(block: PoseBlock, seconds: number): void {
     if (!this.motion) return;
     this.motion.add(block);
+    this.motion.matrixAt(1, this.group.matrix);
     this.motion.velocities(seconds, this.uniforms.linear.value, this.uniforms.angular.value);
     const isKnown = this.colouring === 'speed' && seconds > 0;
     this.showColour(isKnown ? kColourSource.motion : kColourSource.body);
