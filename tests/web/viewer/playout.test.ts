@@ -67,6 +67,22 @@ describe('frames that are shown as they come', () => {
     expect(acknowledged).toEqual([1, 2]);
     expect(reused).toEqual([1, 2, 3]);
   });
+
+  it('are given back after the picture has used them, if they are forgotten', () => {
+    for (let n = 1; n <= 2; ++n) {
+      playout.put(frame(n), n);
+      advance(n);
+    }
+    playout.put(frame(3), 3);
+    playout.forget();
+    expect(reused).toEqual([3]); // the picture shows 1 and 2
+    playout.put(frame(4), 4);
+    advance(4);
+    expect(reused).toEqual([3, 1]);
+    playout.put(frame(5), 5);
+    advance(5);
+    expect(reused).toEqual([3, 1, 2]);
+  });
 });
 
 /** Returns the displayed position, in frames, at intervals of a tenth of a frame. */

@@ -24,6 +24,8 @@ export class Playout {
   /** The frame that the picture approaches, and the previous frame. */
   private shown: Frame | undefined;
   private before: Frame | undefined;
+  /** A previous frame that was forgotten. The picture uses it until the next frame is shown. */
+  private replaced: Frame | undefined;
   private readonly delay = new PlayoutDelay();
   private newestNumber: number | undefined;
 
@@ -75,8 +77,8 @@ export class Playout {
   /** Discards all frames without acknowledgement, because their subscription has ended. */
   forget(): void {
     for (const frame of this.waiting) this.givers.reuse(frame);
-    if (this.before) this.givers.reuse(this.before);
     this.waiting.length = 0;
+    this.replaced ??= this.before;
     this.before = this.newestNumber = undefined;
   }
 
@@ -93,7 +95,8 @@ export class Playout {
   }
 
   private follow(frame: Frame): void {
-    if (this.before) this.givers.reuse(this.before);
+    for (const last of [this.replaced, this.before]) if (last) this.givers.reuse(last);
+    this.replaced = undefined;
     this.before = this.shown;
     this.shown = frame;
   }
