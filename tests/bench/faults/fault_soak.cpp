@@ -104,36 +104,16 @@ class FaultSoak {
     const std::string connections = std::to_string(3 * options_.clients + 10);
     const std::string sessions = std::to_string(2 * options_.sessions + 10);
     server_ = std::make_unique<script::ServerProcess>(
-        "/bin/sh", std::vector<std::string>{"-c",
-                                            "exec env LD_PRELOAD=" VAT_FAULT_SHIM " \"$@\" 2>>'" +
-                                                file("server.log") + "'",
-                                            "sh",
-                                            options_.program,
-                                            "serve",
-                                            "--port",
-                                            "0",
-                                            "--scenes",
-                                            file("scenes"),
-                                            "--scene",
-                                            "pool",
-                                            "--data",
-                                            file("data"),
-                                            "--access",
-                                            "token",
-                                            "--admin-token-file",
-                                            file("admin-token"),
-                                            "--max-memory",
-                                            std::to_string(kMaxMemory),
-                                            "--max-sessions",
-                                            sessions,
-                                            "--max-sessions-per-address",
-                                            sessions,
-                                            "--max-connections-per-address",
-                                            connections,
-                                            "--resume-seconds",
-                                            "2",
-                                            "--log-level",
-                                            "warn"});
+        "/bin/sh",
+        std::vector<std::string>{
+            "-c", "log=$1; shift; exec \"$@\" 2>>\"$log\"", "sh", file("server.log"), "env",
+            // LD_PRELOAD admits no spaces in paths.
+            "LD_LIBRARY_PATH=" VAT_FAULT_SHIM_FOLDER, "LD_PRELOAD=" VAT_FAULT_SHIM,
+            options_.program, "serve", "--port", "0", "--scenes", file("scenes"), "--scene", "pool",
+            "--data", file("data"), "--access", "token", "--admin-token-file", file("admin-token"),
+            "--max-memory", std::to_string(kMaxMemory), "--max-sessions", sessions,
+            "--max-sessions-per-address", sessions, "--max-connections-per-address", connections,
+            "--resume-seconds", "2", "--log-level", "warn"});
     Caller caller = make_admin();
     const auto is_running = [](const Json& session) { return session.at("state") == "running"; };
     for (;;) {
