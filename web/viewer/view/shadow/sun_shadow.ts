@@ -45,8 +45,8 @@ const kVertexShader = /* glsl */ `
 const kToTexture = new Matrix4().set(0.5, 0, 0, 0.5, 0, 0.5, 0, 0.5, 0, 0, 0.5, 0.5, 0, 0, 0, 1);
 
 /**
- * The shadow map of the sun: the depths of all bodies in the layer of casters, and the optical depth
- * of liquids.
+ * The shadow map of the sun. It contains the depths of all bodies in the layer of casters, and the
+ * optical depth of the liquids.
  */
 export class SunShadow {
   private readonly camera = new OrthographicCamera();
