@@ -47,10 +47,11 @@ class StandaloneEnvironment {
   ThreadPoolRunner runner_;
   ServerMetrics metrics_;
   ResourceBudget resources_{kUnlimitedResources};
-  boost::asio::thread_pool frame_threads_{1};
-  boost::asio::thread_pool read_threads_{1};
   SystemClock clock_;
   AccessTokens tokens_{1, clock_};
+  // After the other members, because tasks of these threads use them until the threads end.
+  boost::asio::thread_pool frame_threads_{1};
+  boost::asio::thread_pool read_threads_{1};
   const SessionEnvironment environment_;
 };
 

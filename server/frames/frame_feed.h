@@ -19,6 +19,7 @@ namespace vat {
 /// busy, a newer state replaces the waiting state. Thread-safe.
 class FrameFeed final : public FrameWaker, public std::enable_shared_from_this<FrameFeed> {
  public:
+  /// `metrics` and `clock` must outlive the threads of `pool`.
   FrameFeed(std::string session, const std::optional<Vat>& vat, ServerMetrics& metrics,
             boost::asio::thread_pool& pool, const Clock& clock);
 

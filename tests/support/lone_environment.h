@@ -31,9 +31,9 @@ class LoneEnvironment {
   ThreadPoolRunner runner_;
   ServerMetrics metrics_;
   ResourceBudget resources_{kUnlimitedResources};
+  AccessTokens tokens_{1, clock};
   boost::asio::thread_pool frame_threads_{1};
   boost::asio::thread_pool read_threads_{1};
-  AccessTokens tokens_{1, clock};
 
  public:
   const SessionEnvironment shared = with(resources_);

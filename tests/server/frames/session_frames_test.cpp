@@ -275,9 +275,9 @@ class Block {
 
 // A waiting state was published for the previous subscribers.
 TEST(FrameFeed, GivesNobodyAStateWithoutTheAttributesThatHeAskedFor) {
-  boost::asio::thread_pool pool(1);
   ServerMetrics metrics;
   const ManualClock clock;
+  boost::asio::thread_pool pool(1);
   const auto feed = std::make_shared<FrameFeed>("s1", std::nullopt, metrics, pool, clock);
   const auto connection = std::make_shared<FakeConnection>(1);
   const auto outbox = std::make_shared<ClientOutbox>(connection);
@@ -308,9 +308,9 @@ TEST(FrameFeed, GivesNobodyAStateWithoutTheAttributesThatHeAskedFor) {
 // shown. From the fifth on, a tick reuses the memory of an earlier state.
 TEST(FrameFeed, FourStatesGoRound) {
   constexpr std::size_t kParticles = 1000;
-  boost::asio::thread_pool pool(1);
   ServerMetrics metrics;
   const ManualClock clock;
+  boost::asio::thread_pool pool(1);
   const auto feed = std::make_shared<FrameFeed>("s1", std::nullopt, metrics, pool, clock);
   PublishedState state;
   for (std::uint64_t tick = 1; tick <= 100; ++tick) {
