@@ -69,7 +69,7 @@ LogPlot small_plot() {
                      {.label = "line", .points = {{3, 4}}, .colour = 8, .dash = 1}}};
 }
 
-TEST(BenchPlot, DataLeavesOutWhatHasNoLogarithm) {
+TEST(BenchPlot, DataOmitsValuesWithoutLogarithm) {
   EXPECT_EQ(plot_data(small_plot()), "# front\n1 0.5\n\n\n# none\nNaN NaN\n\n\n# line\n3 4\n");
 }
 

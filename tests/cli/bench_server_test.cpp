@@ -22,7 +22,7 @@ std::string_view text_of(const std::vector<std::uint8_t>& bytes) {
 }
 
 // Compares with the decoder, because the load parses the header independently.
-TEST(BenchFanout, ReadsWhatTheHeaderSays) {
+TEST(BenchFanout, ReadsTheHeader) {
   GridFrame frame;
   frame.header.number = 77;
   frame.header.published = 1.7e9 + 0.25;
@@ -84,7 +84,7 @@ TEST(BenchSeeks, GoesToMomentsOfARecording) {
   EXPECT_EQ(table.number(0, "within") == 5, table.number(0, "longest [ms]") <= 200);
 }
 
-TEST(BenchSeeks, SaysWhatTheServerRefuses) {
+TEST(BenchSeeks, ReportsARefusalOfTheServer) {
   const TemporaryFolder folder;
   const ProgramResult result =
       run_bench({"seeks", "--scene", "gone", "--output", folder.path().string()});

@@ -86,7 +86,7 @@ TEST_F(VatReplay, VerifiesNothingWhereThereIsNothingToCompare) {
   EXPECT_THAT(result.err, HasSubstr("there is no hash to compare with"));
 }
 
-TEST_F(VatReplay, RefusesWhatIsNoRecording) {
+TEST_F(VatReplay, RefusesOtherFiles) {
   std::vector<std::uint8_t> bytes = write_recording(make_recording());
   bytes.pop_back();
   const ProgramResult cut = run_vat({"replay", write(bytes)});

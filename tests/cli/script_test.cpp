@@ -148,7 +148,7 @@ TEST_F(VatScriptTls, PlaysWhereTheCertificateIsTrusted) {
   }
 }
 
-TEST_F(VatScriptTls, ACertificateThatNobodyVouchesForIsRefused) {
+TEST_F(VatScriptTls, AnUntrustedCertificateIsRefused) {
   for (const std::vector<std::string>& options :
        {std::vector<std::string>{}, {"--ca", folder_.file("other.pem")}}) {
     const ProgramResult result = play("wss://localhost", options);
@@ -167,7 +167,7 @@ TEST_F(VatScriptTlsOfAnother, ACertificateForAnotherServerIsRefused) {
   EXPECT_THAT(address.err, HasSubstr("is not trusted: IP address mismatch"));
 }
 
-TEST_F(VatScriptTlsOfAnother, InsecureBelievesWhoeverAnswers) {
+TEST_F(VatScriptTlsOfAnother, InsecureAcceptsAnyServer) {
   const ProgramResult result = play("wss://localhost", {"--insecure"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
 }

@@ -296,7 +296,7 @@ TEST(Incompressible, FlowsFromANozzleAndOutThroughADrain) {
 }
 
 // The report contains the iterations and residuals of the solves.
-TEST(Incompressible, TellsWhatItsSolvesTookAndLeft) {
+TEST(Incompressible, ReportsIterationsAndErrorsOfItsSolves) {
   Scene scene = make_column(12, 20, 0.025);
   scene.incompressible.divergence_tolerance = 1e-6;
   Simulation simulation = make_simulation(scene);

@@ -68,7 +68,7 @@ Real moment_about(const BodyView& body, const Vec3& direction) {
 
 class GuidedBody : public testing::TestWithParam<IntegratorId> {};
 
-TEST_P(GuidedBody, IsDrivenAlongItsMotionWhateverItMeets) {
+TEST_P(GuidedBody, FollowsItsMotionThroughObstacles) {
   const Vec3 start{0.1, 0.2, 0.3};
   Scene scene = scene_of(GetParam(), {driven(start), plate("obstacle", {0.15, 0.2, 0.65})});
   scene.gravity = Vec3::Zero();

@@ -36,7 +36,7 @@ bool same_pose(const BodyView& a, const BodyView& b) {
 
 class HeldBody : public testing::TestWithParam<IntegratorId> {};
 
-TEST_P(HeldBody, AtRestStaysToTheBitAndStopsWhatFallsOnIt) {
+TEST_P(HeldBody, AtRestKeepsItsBitsAndStopsFallingBodies) {
   BodyDescription table = plate("table", {0, 0, 0});
   table.fixed = true;
   BodyDescription ball = plate("ball", {0, 0, 0.2});

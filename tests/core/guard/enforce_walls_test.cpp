@@ -80,7 +80,7 @@ Real rigid_energy(const Trial& trial, const Vec3& frame_velocity) {
 
 class HoldInside : public testing::TestWithParam<IntegratorId> {};
 
-TEST_P(HoldInside, AGrainStopsAtThePlaneAndKeepsWhatIsAlongIt) {
+TEST_P(HoldInside, AGrainStopsAtThePlaneAndKeepsItsTangentialVelocity) {
   for (int wall = 0; wall < kWallCount; ++wall) {
     Scene scene = make_soft_vat(GetParam());
     const Vec3 along(wall / 2 == 0 ? 0 : 0.3, wall / 2 == 1 ? 0 : -0.2, wall / 2 == 2 ? 0 : 0.1);

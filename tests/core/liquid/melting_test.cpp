@@ -133,7 +133,7 @@ TEST(Melting, InACallThatFailsIsUndone) {
   EXPECT_EQ(simulation.state_hash(), hash);
 }
 
-TEST(Melting, RefusesWhatCannotMelt) {
+TEST(Melting, RefusesBodiesThatCannotMelt) {
   Simulation simulation = make_simulation(make_melting_scene(PressureSolver::tait));
   const BodyId jelly = *simulation.find_body("jelly");
   const std::uint64_t hash = simulation.state_hash();

@@ -122,7 +122,7 @@ TEST(PairClusters, HaveEveryPairOnce) {
 }
 
 // The search omits distant sources, so only few candidates are superfluous.
-TEST(PairClusters, LeaveOutWhatIsFar) {
+TEST(PairClusters, OmitDistantParticles) {
   const Cloud cloud(random_points(8000, 1, 5), {}, 0.1);
   const Real reach = 0.1;
   for (const InstructionSet set : available_instruction_sets()) {

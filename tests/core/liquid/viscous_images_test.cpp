@@ -72,7 +72,7 @@ TEST(ViscousImages, HaveTheVelocityTurnedRound) {
 }
 
 // A slip wall mirrors only the normal velocity.
-TEST(ViscousImages, OfSlipWallsResistWhatComesTowardsThem) {
+TEST(ViscousImages, OfSlipWallsResistApproachingLiquid) {
   for (int wall = 0; wall < 6; ++wall) {
     const int axis = wall / 2;
     Scene scene = make_wall_scene(wall, (axis + 1) % 3);

@@ -34,7 +34,7 @@ TEST(SavedSimulation, GoesOnWithEveryControlOfSteps) {
   }
 }
 
-TEST(SavedSimulation, HoldsWhatUsersDo) {
+TEST(SavedSimulation, HasGrabsAndForcesOfUsers) {
   Simulation simulation = make_simulation(make_shaken_vat(IntegratorId::velocity_verlet));
   simulation.advance(30);
   const std::vector<BodyView> bodies = simulation.bodies();
@@ -82,7 +82,7 @@ TEST(SavedSimulation, GoesOnAfterTheGuardUndidSteps) {
   EXPECT_GT(undone, 0U);
 }
 
-TEST(SavedSimulation, HoldsWhatSleeps) {
+TEST(SavedSimulation, HasSleepingBodies) {
   Simulation simulation = make_simulation(make_struck_stack());
   simulation.advance(60);  // contacts, and checks of bodies that may fall asleep
   expect_goes_on(simulation, 10);

@@ -160,7 +160,7 @@ TEST(RemoveBody, LeavesTheOthersWhereTheyAre) {
   }
 }
 
-TEST(RemoveBody, EndsWhatActedOnItAndNeverUsesItsIdAgain) {
+TEST(RemoveBody, EndsItsInteractionsAndDoesNotReuseItsId) {
   Simulation simulation = make_simulation(make_shaken_vat(IntegratorId::velocity_verlet));
   const BodyId id = simulation.find_body("crate").value();  // the largest id so far
   ASSERT_TRUE(simulation.grab_start(1, id, 0, Vec3::Zero()).ok());

@@ -115,13 +115,13 @@ TEST_F(MoveBody, GoesOnFromItsBytesWithTheSameBits) {
   expect_goes_on(simulation, 100);
 }
 
-TEST_F(MoveBody, KeepsWhatIsHeld) {
+TEST_F(MoveBody, KeepsHeldParticles) {
   ASSERT_TRUE(simulation.grab_start(3, id(1), 0, {0.5, 0.5, 0.5}).ok());
   ASSERT_TRUE(simulation.move_body(id(1), {{0.6, 0.6, 0.6}, {}, {}}).ok());
   EXPECT_TRUE(simulation.grab_move(3, {0.4, 0.5, 0.5}).ok());
 }
 
-TEST_F(MoveBody, RefusesWhatCannotBeAndChangesNothing) {
+TEST_F(MoveBody, RefusesImpossibleMotionsAndChangesNothing) {
   const std::uint64_t hash = simulation.state_hash();
   const auto error = [&](BodyId body, const BodyPlacement& place) {
     return errors_of(simulation.move_body(body, place));
@@ -202,7 +202,7 @@ TEST_F(SetMaterial, SpringsGetTheirConstants) {
   EXPECT_EQ(simulation.scene().materials[1].springs->shear->stiffness, 600);
 }
 
-TEST_F(SetMaterial, WhatSpringsHaveFlownStays) {
+TEST_F(SetMaterial, PlasticStrainIsKept) {
   Material plastic = material("jelly");
   plastic.plasticity = Plasticity{1e-4, 0.1, 0, 0.5};
   ASSERT_TRUE(simulation.set_material(plastic).ok());
@@ -282,7 +282,7 @@ TEST_F(SetMaterial, MassesThatWereGivenStay) {
   expect_goes_on(simulation, 20);
 }
 
-TEST_F(SetMaterial, RefusesWhatIsWrongByItsPlace) {
+TEST_F(SetMaterial, RefusalsNameThePath) {
   const std::uint64_t hash = simulation.state_hash();
   Material changed = material("water");
   changed.density = -1;

@@ -100,7 +100,7 @@ TEST_P(Flows, InLayersASpacingApart) {
 INSTANTIATE_TEST_SUITE_P(Integrators, Flows, testing::ValuesIn(kIntegrators),
                          [](const auto& each) { return to_string(each.param); });
 
-TEST(Flow, InTheTubeIsSteadyWhateverPushes) {
+TEST(Flow, InTheTubeIsSteadyForEachDrive) {
   Scene scene = make_flow_scene();
   // A block of liquid in front of the opening.
   scene.bodies[0].shape = BoxShape{{0.4, 0.5, 0.5}, {0.3, 0.5, 0.5}};
@@ -207,7 +207,7 @@ TEST(Flow, DrainsAWholeBody) {
   EXPECT_GT(pool_size(simulation), 0U);
 }
 
-TEST(Flow, LeavesAStableOrderOfWhatStays) {
+TEST(Flow, KeepsTheOrderOfRemainingParticles) {
   Scene scene = make_flow_scene();
   scene.emitters.clear();
   scene.bodies.resize(1);
@@ -225,7 +225,7 @@ TEST(Flow, LeavesAStableOrderOfWhatStays) {
   }
 }
 
-TEST(Flow, EndsGrabsOfWhatIsDrainedAlone) {
+TEST(Flow, EndsOnlyGrabsOfDrainedParticles) {
   Scene scene = make_flow_scene();
   scene.emitters.clear();
   scene.bodies[0].shape = BoxShape{{0.5, 0.5, 0.2}, {0.2, 0.2, 0.2}};

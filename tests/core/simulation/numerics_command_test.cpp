@@ -99,7 +99,7 @@ TEST(SetNumerics, LetGoOfABodyWhenItsTimeComes) {
   EXPECT_NEAR(simulation.bodies()[0].pose->center_of_mass.z(), -0.05, 1e-12);
 }
 
-TEST(SetNumerics, HoldWhatIsHeldAsOfOneThatIsGrabbedThen) {
+TEST(SetNumerics, KeepHeldBodiesAsNewlyGrabbedOnes) {
   for (const std::size_t body : {0, 1, 2}) {
     Simulation before = make_simulation(ticked_scene());
     Simulation after = make_simulation(ticked_scene());

@@ -99,7 +99,7 @@ TEST_F(RestoredBody, MayHaveBegunWhereTheVatIsNoMore) {
   }
 }
 
-TEST_F(RestoredBody, IsRefusedByWhatIsWrongAndChangesNothing) {
+TEST_F(RestoredBody, IsRefusedWithInvalidValuesAndChangesNothing) {
   const auto [pool, flowing] = take(0);
   const auto [cube, bent] = take(0);
   const auto [crate, turning] = take(0);

@@ -132,7 +132,7 @@ TEST_P(VatByHand, AtFullSpeedIsAsOneAtRest) {
   EXPECT_LT((seen.velocity - speed - at_rest.velocity).norm(), 10 * tolerance);
 }
 
-TEST_P(VatByHand, TakesWhatIsInItAlong) {
+TEST_P(VatByHand, CarriesItsContent) {
   Simulation simulation = test::make_simulation(scene());
   ASSERT_TRUE(simulation.move_vat({-1.9, 0, 0}).ok());
   test::advance_to(simulation, 3);
@@ -203,7 +203,7 @@ TEST(MovedVat, AddsToItsOwnMotion) {
   EXPECT_LT((simulation.vat_offset() - Vec3(0.3, 0.3, 0)).norm(), 1e-12);
 }
 
-TEST(MovedVat, WakesWhatSleeps) {
+TEST(MovedVat, WakesSleepingBodies) {
   Scene scene = plain();
   scene.sleeping = Sleeping{0.05, 0.1};
   Simulation simulation = test::make_simulation(scene);

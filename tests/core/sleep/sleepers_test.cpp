@@ -130,7 +130,7 @@ TEST(Sleepers, PartAndRestMakeTheWhole) {
   }
 }
 
-TEST(Islands, AreBodiesNearEachOtherAndWhatIsAwakeKeepsThemAwake) {
+TEST(Islands, AreNearbyBodiesAndAnAwakeBodyKeepsThemAwake) {
   Scene scene = make_resting_scene();
   // Particles detect each other at 0.1 m. Islands are at least 0.25 m apart.
   scene.bodies = {make_crate("a", 0.0), make_crate("b", 0.2 + 0.249), make_crate("c", 5.0),

@@ -88,7 +88,7 @@ TEST(ImplicitSprings, LoseEnergyByDashpotsUntilTheBodyTurnsAsOne) {
   }
 }
 
-TEST(ImplicitSprings, CalmAtOnceWhatIsNotResolved) {
+TEST(ImplicitSprings, DampUnresolvedOscillationsAtOnce) {
   Simulation simulation = test::make_simulation(make_oscillator({1e8, 100}, 0.01, 0.01));
   simulation.advance(
       20);  // omega dt = 100, rate dt = 1: an undamped rounding error would oscillate

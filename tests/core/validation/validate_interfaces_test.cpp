@@ -115,7 +115,7 @@ TEST(ValidateInterfaces, AccuracyChoosesNumericsThatCanProject) {
   EXPECT_EQ(chosen.control, StepControl::adaptive);
 }
 
-TEST(ValidateInterfaces, HoldForWhatCommandsAdd) {
+TEST(ValidateInterfaces, ApplyToAddedBodies) {
   Scene scene = valid_scene();
   scene.pressure_solver = PressureSolver::tait;
   scene.interfaces = {{{"water", "vat"}, kSph, {}}};

@@ -74,7 +74,7 @@ TEST(Warnings, OfRunTime) {
   EXPECT_TRUE(is_slow(sea(0.001)));
 }
 
-TEST(CostEstimate, AddsUpWhatBodiesNeed) {
+TEST(CostEstimate, AddsTheCostsOfBodies) {
   const auto cost = [](const Scene& scene) {
     const SampledBody body = sample_body(scene.bodies[0], scene.materials[0]);
     const SampledBody* pointer = &body;
@@ -169,7 +169,7 @@ TEST(Warnings, OfLawsThatALiquidOfTaitDoesNotHave) {
   EXPECT_THAT(warnings_of(scene), testing::Not(idle));
 }
 
-TEST(Warnings, OfWhatThePressureSolverDoesNotUse) {
+TEST(Warnings, OfConstantsThatThePressureSolverIgnores) {
   Scene scene = two_balls(1);
   scene.printed_pressure_force = true;
   scene.kernel = KernelId::cubic_spline;

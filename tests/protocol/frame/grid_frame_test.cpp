@@ -76,7 +76,7 @@ TEST(GridFrame, HasPositionsWithinHalfAQuantum) {
   }
 }
 
-TEST(GridFrame, PutsWhatIsOutsideTheGridToItsEdge) {
+TEST(GridFrame, MovesOutsideParticlesToTheEdge) {
   const double nan = std::nan("");
   const PublishedState state = liquid_state({{-1, 5, nan}, {-kInfinity, kInfinity, 1e300}});
   EXPECT_EQ(on_grid(state, make_frame_grid({0, 0, 0}, {1, 1, 1}, 0)).blocks[0].positions,

@@ -75,7 +75,7 @@ TEST_F(ObjectReaderTest, ReadsCounts) {
   EXPECT_EQ(error(), "");
 }
 
-TEST_F(ObjectReaderTest, RefusesWhatIsNoCount) {
+TEST_F(ObjectReaderTest, RefusesValuesOtherThanCounts) {
   for (const char* value : {"-1", "2.9", "8", "1", "-0.5", "1e300", "3000000000",
                             "18446744073709551616", "9007199254740994.0"}) {
     EXPECT_EQ(read("{\"n\": " + std::string(value) + "}").count("n", 2, 7), 2U) << value;
@@ -183,7 +183,7 @@ TEST_F(ObjectReaderTest, BoundsArrays) {
   EXPECT_EQ(error(), "wrong_type /at/l");
 }
 
-TEST_F(ObjectReaderTest, RefusesMembersThatNobodyAskedFor) {
+TEST_F(ObjectReaderTest, RefusesMembersThatWereNotRead) {
   ObjectReader& asked = read(R"({"a": 1, "b": 2, "c/d~e": 3})");
   asked.real("a", 0, 9);
   asked.member("absent");

@@ -19,7 +19,7 @@ namespace {
 
 class SessionFrames : public SessionTest {};
 
-TEST_F(SessionFrames, AreWhatTheSubscriptionAsksFor) {
+TEST_F(SessionFrames, FollowTheSubscription) {
   client->result("control.step", {{"ticks", 5}});
   client->result("frames.subscribe", {{"every", 5},
                                       {"max_error", 1e-3},
@@ -99,7 +99,7 @@ TEST_F(SessionFrames, AccelerationsAreThoseOfTheLastTick) {
   EXPECT_NEAR(cube_at(4), 1, 1.1e-3);
 }
 
-TEST_F(SessionFrames, NothingIsEncodedForNobody) {
+TEST_F(SessionFrames, NothingIsEncodedWithoutSubscribers) {
   client->result("control.step", {{"ticks", 20}});
   EXPECT_NE(server.metrics().find("\nvat_frames_encoded_total 0\n"), std::string::npos);
   client->result("frames.subscribe");
@@ -170,7 +170,7 @@ class SessionPatience : public SessionTest {
 };
 
 // Applies also to a state at rest: the server sent a frame and does not know whether it arrived.
-TEST_F(SessionPatience, WhoAcknowledgesNothingIsToldAndClosed) {
+TEST_F(SessionPatience, AClientWithoutAcknowledgementsIsNotifiedAndClosed) {
   client->result("frames.subscribe");
   client->wait_frame([](const GridFrame&) { return true; });
   const auto silent = join();
@@ -225,7 +225,7 @@ class SessionCoreTest : public testing::Test {
 
 // The second frame of each client refers to one frame, the following frames to two, as those of the
 // other clients do.
-TEST_F(SessionCoreTest, WhoComesBetweenTwoTicksSharesAKeyFrame) {
+TEST_F(SessionCoreTest, NewcomersBetweenTwoTicksShareAKeyFrame) {
   const auto first = subscribe();
   tick();
   tick();
@@ -243,7 +243,7 @@ TEST_F(SessionCoreTest, WhoComesBetweenTwoTicksSharesAKeyFrame) {
   }
 }
 
-TEST_F(SessionCoreTest, WhoComesWhileItPausesGetsAFrameAtOnce) {
+TEST_F(SessionCoreTest, ANewcomerToAPausedSessionReceivesAFrameAtOnce) {
   core.set_playing(false);
   EXPECT_EQ(subscribe()->frames().size(), 1U);
 }
@@ -274,7 +274,7 @@ class Block {
 };
 
 // A waiting state was published for the previous subscribers.
-TEST(FrameFeed, GivesNobodyAStateWithoutTheAttributesThatHeAskedFor) {
+TEST(FrameFeed, SendsNoStateWithoutTheRequestedAttributes) {
   ServerMetrics metrics;
   const ManualClock clock;
   boost::asio::thread_pool pool(1);

@@ -35,7 +35,7 @@ TEST(RequestPath, Decodes) {
 }
 
 // Invalid paths: no path, broken escapes, parent folders, and zero bytes.
-TEST(RequestPath, RefusesWhatIsNotAPath) {
+TEST(RequestPath, RefusesInvalidPaths) {
   for (const char* target : {"",
                              "a",
                              "*",
@@ -248,7 +248,7 @@ TEST_F(HttpSite, AnUnchangedFileIsNotSentAgain) {
   EXPECT_EQ(rebuilt({"GET", "/", "", header(files({"GET", "/"}), "ETag")}).status, 200);
 }
 
-TEST_F(HttpSite, ReadyIsWhoTakesNewSessions) {
+TEST_F(HttpSite, ReadyMeansThatSessionsCanBeCreated) {
   const std::map<ServerPhase, std::string> phases = {{ServerPhase::starting, "starting"},
                                                      {ServerPhase::recovering, "recovering"},
                                                      {ServerPhase::ready, "ready"},

@@ -41,7 +41,7 @@ class IdleGrabs : public Presence {
   IdleGrabs() : Presence(short_grabs()) {}
 };
 
-TEST_F(Presence, WhoComesIsToldOfThoseThereAndTheyOfIt) {
+TEST_F(Presence, NewcomersAndOthersReceiveEachOther) {
   const auto guest = connect();
   const Json joined = guest->result("session.join", {{"name", "Ada"}});
   const std::uint64_t number = joined.at("participant");
@@ -54,7 +54,7 @@ TEST_F(Presence, WhoComesIsToldOfThoseThereAndTheyOfIt) {
   EXPECT_EQ(client->result("presence.list").at("participants").at(1), expected);
 }
 
-TEST_F(Presence, TellsWhoIsAwayAndWhoHasGone) {
+TEST_F(Presence, HasAbsentAndFormerParticipants) {
   auto guest = connect();
   const Json joined = guest->result("session.join");
   const std::uint64_t number = joined.at("participant");
@@ -68,7 +68,7 @@ TEST_F(Presence, TellsWhoIsAwayAndWhoHasGone) {
                      [&](const Json& params) { return params.at("left") == Json({number}); });
 }
 
-TEST_F(Presence, TellsNamesRolesAndWhatIsHeld) {
+TEST_F(Presence, HasNamesRolesAndGrabs) {
   const auto guest = connect();
   const std::uint64_t number = guest->result("session.join").at("participant");
   guest->result("participant.rename", {{"name", "Bob"}});

@@ -101,7 +101,7 @@ TEST(RateMeter, MeasuresSimulatedSecondsPerSecond) {
   EXPECT_TRUE(meter.slower_than(3));
 }
 
-TEST(RateMeter, ForgetsWhatIsLongerAgoThanItsWindow) {
+TEST(RateMeter, ForgetsSamplesOlderThanItsWindow) {
   RateMeter meter;
   Time now = kStart;
   for (int i = 0; i < 200; ++i) meter.tick_done(now += milliseconds(10), 0.02);

@@ -169,7 +169,7 @@ TEST(StorageRecorder, TakesStoredStatesAsTheyAre) {
   EXPECT_EQ(recording->moments[0].state, stored);
 }
 
-TEST(StorageCompression, GivesBackTheBytesAndRefusesWhatIsDamagedOrTooLarge) {
+TEST(StorageCompression, RestoresTheBytesAndRefusesDamagedOrLargeOnes) {
   std::vector<std::uint8_t> bytes = noise(3000);
   bytes.resize(10'000);
   std::vector<std::uint8_t> frame = compress(bytes);
@@ -272,7 +272,7 @@ TEST(CheckpointPace, DearOnesTakeTheirShareAndNoMore) {
   }
 }
 
-TEST(CheckpointPace, SomeComeWhateverTheyCost) {
+TEST(CheckpointPace, SomeAreWrittenAtAnyCost) {
   const Course course =
       follow(CheckpointPace(Seconds(0.15)), Seconds(0.004), Seconds(5), Seconds(100));
   EXPECT_LE(course.longest, CheckpointPace::kMaxWork + Seconds(0.005));

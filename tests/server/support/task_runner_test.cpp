@@ -160,7 +160,7 @@ TEST(TaskRunner, TheCallerAndASleepingHelperWorkAtOnce) {
   }
 }
 
-TEST(TaskRunner, ShortRunsWakeNobody) {
+TEST(TaskRunner, ShortRunsWakeNoHelpers) {
   using std::chrono::microseconds;
   const auto is_worth = ThreadPoolRunner::is_worth_waking;
   EXPECT_FALSE(is_worth(microseconds(1), 1, 7));
