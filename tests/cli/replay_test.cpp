@@ -67,7 +67,7 @@ TEST_F(VatReplay, RepeatsRecordingsOfEarlierVersions) {
   EXPECT_GE(count, 1);
 }
 
-TEST_F(VatReplay, TellsTheTickAtWhichItDiffers) {
+TEST_F(VatReplay, ReportsTheFirstDifferentTick) {
   Recording recording = make_recording();
   recording.hashes[1].hash ^= 1;
   const ProgramResult result = run_vat({"replay", write(write_recording(recording))});
@@ -76,7 +76,7 @@ TEST_F(VatReplay, TellsTheTickAtWhichItDiffers) {
   EXPECT_THAT(result.err, HasSubstr("; the states are equal up to tick 5\n"));
 }
 
-TEST_F(VatReplay, VerifiesNothingWhereThereIsNothingToCompare) {
+TEST_F(VatReplay, VerifiesNothingWithoutHashes) {
   Recording recording = make_recording();
   recording.hashes.clear();
   const std::string file = write(write_recording(recording));

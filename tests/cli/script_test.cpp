@@ -139,7 +139,7 @@ class VatScriptTlsOfAnother : public VatScriptTls {
   VatScriptTlsOfAnother() : VatScriptTls("DNS:example.org,IP:192.0.2.1") {}
 };
 
-TEST_F(VatScriptTls, PlaysWhereTheCertificateIsTrusted) {
+TEST_F(VatScriptTls, PlaysIfTheCertificateIsTrusted) {
   EXPECT_TRUE(server_->is_secure());
   for (const char* host : {"wss://localhost", "wss://127.0.0.1"}) {
     const ProgramResult result = play(host, {"--ca", certificate_});

@@ -165,7 +165,7 @@ TEST(HoldInsideGrain, TakesTheSpeedOfAWallThatMoves) {
   }
 }
 
-TEST(HoldInsideGrain, AFixedOneStaysWhereItIs) {
+TEST(HoldInsideGrain, AFixedOneKeepsItsPlace) {
   Scene scene = make_soft_vat();
   scene.bodies = {make_grain({0, 0, 0}, {0, 0, 0})};
   std::get<ParticleShape>(scene.bodies[0].shape).fixed = {0};
@@ -175,7 +175,7 @@ TEST(HoldInsideGrain, AFixedOneStaysWhereItIs) {
   EXPECT_EQ(trial.now.position[0], Vec3(0, 0, -5));
 }
 
-TEST(HoldInsideGrain, NothingHoldsWhereTheWallsAreOff) {
+TEST(HoldInsideGrain, DisabledWallsDoNotHold) {
   Scene scene = make_soft_vat();
   scene.forces.walls = false;
   scene.bodies = {make_grain({0, 0, 0}, {0, 0, -20})};

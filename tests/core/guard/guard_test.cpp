@@ -165,7 +165,7 @@ TEST(Guard, OnlyLiquidsOfOneMaterialDoNotNoticeOneAnother) {
   EXPECT_EQ(travel_of({{rigid, "a"}}), std::vector<Real>{kMaxLength});
 }
 
-TEST(Guard, ADeformableBodyNoticesItselfWhereItHasSelfContact) {
+TEST(Guard, ADeformableBodyWithSelfContactMeetsItself) {
   EXPECT_EQ(travel_of({{BodyKind::deformable, "a"}}), std::vector<Real>{0.05});
   EXPECT_EQ(travel_of({{BodyKind::deformable, "a"}}, false), std::vector<Real>{kMaxLength});
 }
@@ -255,7 +255,7 @@ TEST(Guard, RepeatsAStepInTwoFourAndEightParts) {
   }
 }
 
-TEST(Guard, KeepsTheLastGoodStateWhereHalvingIsNoHelp) {
+TEST(Guard, KeepsTheLastGoodStateIfHalvingFails) {
   Simulation simulation = make_simulation(make_oscillator(100));
   const std::uint64_t good = simulation.state_hash();
   const AdvanceReport report = simulation.advance(40);

@@ -99,7 +99,7 @@ TEST_P(Melts, AgainAfterARestore) {
   EXPECT_EQ(simulation.state_hash(), melted);
 }
 
-TEST_P(Melts, UnderUsersHandsWhichLetGo) {
+TEST_P(Melts, DuringGrabsWhichEnd) {
   Scene scene = make_melting_scene(GetParam());
   scene.bodies[1].melting = Melting{"water", 2 * kStep};
   Simulation simulation = make_simulation(scene);

@@ -149,7 +149,7 @@ TEST(PairClusters, OmitDistantParticles) {
   }
 }
 
-TEST(PairClusters, StopWhereThereIsTooMuchWork) {
+TEST(PairClusters, StopAtTheLimitOfWork) {
   const Cloud cloud(Points(3000, Vec3::Zero()), {}, 0.1);
   PairSearch how = cloud.how(0.1, best_instruction_set());
   how.most_work = 1'000'000;

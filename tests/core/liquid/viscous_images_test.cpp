@@ -101,7 +101,7 @@ TEST(ViscousImages, MoveWithTheWallAndTheVat) {
   EXPECT_NEAR(probe.force(0).x(), others * 2 * (0.5 + 0.05 * std::numbers::pi), 1e-12 * others);
 }
 
-TEST(ViscousImages, CostNothingWhereTheyDoNothing) {
+TEST(ViscousImages, CostNothingWithoutEffect) {
   const auto has_stage = [](const Scene& scene) {
     return has_viscous_images(ForceProbe(scene).model());
   };

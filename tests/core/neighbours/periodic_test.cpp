@@ -257,7 +257,7 @@ TEST(Periodic, SolidsThatCrossTheSeamCollideAsInTheOpen) {
   }
 }
 
-TEST(Periodic, LiquidComesInThroughTheOtherSide) {
+TEST(Periodic, LiquidEntersThroughTheOtherSide) {
   Scene scene = make_full_box(4, 2, 1);
   scene.bodies[0].velocity = {30, 0, -7};
   Simulation simulation = make_simulation(scene);

@@ -150,7 +150,7 @@ TEST(UniformGrid, CanBeBuiltAgainWithOtherPoints) {
 }
 
 // Memory depends on the number of points, not on the space between them.
-TEST(UniformGrid, GrowsItsCellsWherePointsAreSparse) {
+TEST(UniformGrid, HasLargerCellsForSparsePoints) {
   UniformGrid grid;
   const std::vector<Vec3> points = {Vec3::Constant(-1e6), Vec3::Constant(1e6)};
   grid.build(points, 1e-6);

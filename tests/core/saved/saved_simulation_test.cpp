@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-TEST(SavedSimulation, GoesOnWithEveryIntegrator) {
+TEST(SavedSimulation, ContinuesWithEveryIntegrator) {
   for (const IntegratorId integrator : kIntegrators) {
     SCOPED_TRACE(to_string(integrator));
     Simulation simulation = make_simulation(make_shaken_vat(integrator));
@@ -22,7 +22,7 @@ TEST(SavedSimulation, GoesOnWithEveryIntegrator) {
   }
 }
 
-TEST(SavedSimulation, GoesOnWithEveryControlOfSteps) {
+TEST(SavedSimulation, ContinuesWithEveryStepControl) {
   for (const StepControl control : {StepControl::adaptive, StepControl::local}) {
     SCOPED_TRACE(to_string(control));
     Scene scene = make_shaken_vat(IntegratorId::velocity_verlet, 2e-3);
@@ -68,7 +68,7 @@ TEST(SavedSimulation, HoldsBodiesThatCameAndWent) {
   EXPECT_EQ(loaded.value().add_body(make_newcomer(BodyKind::liquid, 0.7)).value(), second + 1);
 }
 
-TEST(SavedSimulation, GoesOnAfterTheGuardUndidSteps) {
+TEST(SavedSimulation, ContinuesAfterUndoneSteps) {
   Scene scene = make_two_material_scene(IntegratorId::velocity_verlet, 1e-3);
   scene.gravity = {1000, 0, 0};
   scene.bodies = {make_block("fast", BodyKind::liquid, "a", 1, {0, 0, 0}, {45, 0, 0}),

@@ -139,7 +139,7 @@ TEST(AddBody, RefusesBadBodies) {
   EXPECT_EQ(simulation.bodies().size(), 3U);
 }
 
-TEST(RemoveBody, LeavesTheOthersWhereTheyAre) {
+TEST(RemoveBody, DoesNotMoveOthers) {
   for (const char* name : {"pool", "jelly", "crate"}) {
     Simulation simulation = make_simulation(make_shaken_vat(IntegratorId::velocity_verlet));
     simulation.advance(20);

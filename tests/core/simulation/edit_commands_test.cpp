@@ -43,7 +43,7 @@ TEST_F(MoveBody, ShiftsLiquidAndDeformableBodiesAsTheyAre) {
   }
 }
 
-TEST_F(MoveBody, TurnsRigidBodiesWhichGoOnTurningAsTheyDid) {
+TEST_F(MoveBody, TurnsRigidBodiesAndKeepsTheirAngularVelocity) {
   simulation.advance(50);
   const RigidPose before = *simulation.bodies()[2].pose;
   const Quat turned(Eigen::AngleAxis<Real>(1, Vec3::UnitX()));
@@ -86,7 +86,7 @@ TEST_F(MoveBody, TheShapeOfARigidBodyIsAroundItsParticles) {
 }
 
 // Moving a body at the start is equivalent to describing it there.
-TEST_F(MoveBody, MovesWhereItsDescriptionBegins) {
+TEST_F(MoveBody, MovesTheOriginOfItsDescription) {
   const Quat turned(Eigen::AngleAxis<Real>(-0.5, Vec3::UnitZ()));
   ASSERT_TRUE(simulation.move_body(id(2), {{0.31, 0.35, 0.8}, turned, {}}).ok());
   ASSERT_TRUE(
@@ -105,7 +105,7 @@ TEST_F(MoveBody, MovesWhereItsDescriptionBegins) {
   }
 }
 
-TEST_F(MoveBody, GoesOnFromItsBytesWithTheSameBits) {
+TEST_F(MoveBody, ContinuesFromItsBytesWithTheSameBits) {
   simulation.advance(60);
   ASSERT_TRUE(simulation.move_body(id(1), {{0.6, 0.6, 0.6}, {}, Vec3(0.1, 0, 0)}).ok());
   expect_goes_on(simulation, 30);
@@ -251,7 +251,7 @@ TEST_F(SetMaterial, AnAppearanceLeavesTheStateUnchanged) {
   EXPECT_EQ(error(painted), "out_of_range /material/appearance/opacity");
 }
 
-TEST_F(SetMaterial, GoesOnFromItsBytesWithTheSameBits) {
+TEST_F(SetMaterial, ContinuesFromItsBytesWithTheSameBits) {
   simulation.advance(60);
   Material water = material("water");
   water.liquid->viscosity = 3;

@@ -122,7 +122,7 @@ TEST(Flow, BeginsAndEndsOnTime) {
   EXPECT_EQ(count_steady(simulation), 0U);
 }
 
-TEST(Flow, StopsAndGoesOnByCommand) {
+TEST(Flow, StopsAndContinuesByCommand) {
   Scene scene = make_flow_scene();
   scene.emitters[0].open = false;
   Simulation simulation = make_simulation(scene);
@@ -141,7 +141,7 @@ TEST(Flow, StopsAndGoesOnByCommand) {
   EXPECT_EQ(count_steady(simulation), 0U);  // the tube is empty
 }
 
-TEST(Flow, StopsWhereTheBodyIsFullAndGoesOnWhenThereIsRoom) {
+TEST(Flow, StopsAtAFullBodyAndContinuesWithRoom) {
   Scene scene = make_flow_scene();
   scene.emitters[0].most_particles = kStart + 50;
   Simulation simulation = make_simulation(scene);
@@ -288,7 +288,7 @@ TEST(Flow, GoesWithItsBody) {
   EXPECT_EQ(simulation.particle_count(), 27U);
 }
 
-TEST(Flow, OfOtherBodiesGoesOnWhenOneIsRemoved) {
+TEST(Flow, OfOtherBodiesContinuesAfterARemoval) {
   Scene scene = make_flow_scene();
   BodyDescription other = scene.bodies[0];
   other.name = "other";

@@ -69,7 +69,7 @@ TEST(HandMotion, IsSmoothWithinItsBoundsAndEndsAtTheTarget) {
   }
 }
 
-TEST(HandMotion, GoesOnSmoothlyWhereTheTargetChanges) {
+TEST(HandMotion, IsSmoothAtAChangeOfTheTarget) {
   const HandMotion first = to(2);
   const VatMotion then = hand_motion(first, 0.3);
   const HandMotion second = to(-1, then.offset.x(), then.velocity.x(), 0.3);
@@ -155,7 +155,7 @@ Scene plain() {
   return ball_in_vat(IntegratorId::velocity_verlet, StepControl::fixed);
 }
 
-TEST(MovedVat, GoesOnFromItsBytesWithTheSameBits) {
+TEST(MovedVat, ContinuesFromItsBytesWithTheSameBits) {
   Simulation simulation = test::make_simulation(plain());
   Simulation unmoved = test::make_simulation(plain());
   unmoved.advance(1000);
@@ -217,7 +217,7 @@ TEST(MovedVat, WakesSleepingBodies) {
   EXPECT_EQ(simulation.sleeping_body_count(), 1U);
 }
 
-TEST(MovedVat, IsRefusedWhereItCannotBe) {
+TEST(MovedVat, IsRefusedAtImpossiblePlaces) {
   const auto error = [](const Scene& scene, const Vec3& offset) {
     Simulation simulation = test::make_simulation(scene);
     const std::uint64_t hash = simulation.state_hash();

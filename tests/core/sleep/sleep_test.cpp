@@ -12,7 +12,7 @@ using namespace test;
 /// Islands are searched in every eighth check. A tick has one check.
 constexpr int kTicksToSleep = 9;
 
-TEST(Sleep, NothingSleepsWhereTheSceneDoesNotSaySo) {
+TEST(Sleep, NothingSleepsIfTheSceneDisablesIt) {
   Scene scene = make_resting_scene();
   scene.bodies = {make_crate("crate", 0.0)};
   scene.sleeping.reset();

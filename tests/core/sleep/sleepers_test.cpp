@@ -146,7 +146,7 @@ TEST(Islands, AreNearbyBodiesAndAnAwakeBodyKeepsThemAwake) {
             (std::vector<Index>{kAwake, kAwake, kAwake, kAwake, 4}));
 }
 
-TEST(Sleepers, ForcesGoOnToo) {
+TEST(Sleepers, KeepTheirForces) {
   const auto whole = compile_scene(make_all_kinds());
   const auto awake = compile_awake(*whole, {kAwake, 0, 0, 0, kAwake, kAwake});
   Forces forces = initial_state(*whole).forces;

@@ -89,7 +89,7 @@ TEST(ValidateInterfaces, FindsEveryMistakeAlone) {
   }
 }
 
-TEST(ValidateInterfaces, AllowEveryLawWhereItFits) {
+TEST(ValidateInterfaces, AllowEverySuitableLaw) {
   Scene scene = valid_scene();
   scene.pressure_solver = PressureSolver::tait;
   scene.default_interface = {.stiffness = 1, .restitution = 0.05};

@@ -39,7 +39,7 @@ TEST(Warnings, OfWallsThatAreThereOnly) {
   EXPECT_EQ(warnings_of(scene), "");
 }
 
-TEST(Warnings, OfNoContactWhereThereIsNone) {
+TEST(Warnings, OfNoContactIfThereIsNone) {
   Scene scene = two_balls(0.12);
   scene.forces.contacts = false;
   EXPECT_EQ(warnings_of(scene), "");

@@ -27,7 +27,7 @@ Simulation make_falling() {
   return make_simulation(scene);
 }
 
-TEST(Publish, CopiesAttributesOnlyWhereTheyAreWanted) {
+TEST(Publish, CopiesRequestedAttributesOnly) {
   const Simulation simulation = make_falling();
   const PublishedState plain = publish(simulation);
   for (const auto& column : plain.bodies[0].attributes) EXPECT_TRUE(column.empty());

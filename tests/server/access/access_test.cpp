@@ -149,7 +149,7 @@ TEST_F(Access, AnInvitationOpensOneSessionAndNoOther) {
   EXPECT_EQ(list.at(0).at("session"), own);
 }
 
-TEST_F(Access, AnInvitationIsGoodAsOftenAsItSays) {
+TEST_F(Access, AnInvitationIsValidForItsNumberOfUses) {
   const auto owner = this->owner();
   const std::string twice =
       owner->result("session.invite", {{"role", "viewer"}, {"uses", 2}}).at("token");
@@ -303,7 +303,7 @@ TEST_F(ServeAccessTest, IsOpenOnlyIfAllClientsAreOnThisMachine) {
   EXPECT_EQ(made().settings.mode, AccessMode::token);
 }
 
-TEST_F(ServeAccessTest, MakesAnAdminsTokenWhereOneIsNeededAndNotGiven) {
+TEST_F(ServeAccessTest, MakesANeededAdminTokenIfNoneIsGiven) {
   EXPECT_TRUE(made().made_token.empty());
   EXPECT_FALSE(made().settings.admin);
   settings.access = "token";

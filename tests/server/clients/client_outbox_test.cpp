@@ -81,7 +81,7 @@ TEST_F(Outbox, TakesThreeFramesThatAreNotAcknowledged) {
   EXPECT_EQ(last_number(), 51u);
 }
 
-TEST_F(Outbox, WakesOnceWhereAFrameWasMissed) {
+TEST_F(Outbox, WakesOnceIfAFrameWasMissed) {
   offer(1, 3);
   EXPECT_TRUE(outbox.acknowledge(1, now));
   EXPECT_EQ(waker->count, 0) << "no frame was missed";
@@ -338,7 +338,7 @@ TEST_F(Outbox, AClientWithoutAcknowledgementsIsClosedAfterThePatience) {
   EXPECT_FALSE(outbox.frame_channel(subscription).is_open);
 }
 
-TEST_F(Outbox, SilenceIsAllowedWhereThereIsNothingToAcknowledge) {
+TEST_F(Outbox, SilenceIsAllowedWithoutUnacknowledgedFrames) {
   constexpr std::chrono::seconds kPatience(30);
   offer(1, 3);
   EXPECT_TRUE(outbox.acknowledge(3, now));

@@ -238,7 +238,7 @@ TEST_F(SessionLifecycle, ASceneThatIsRefusedLeavesTheOldOneRunning) {
   EXPECT_EQ(hash(), hash_of(reference));
 }
 
-TEST_F(SessionLifecycle, StoppingTellsAllClientsAndEndsAllEffects) {
+TEST_F(SessionLifecycle, StoppingNotifiesAllClientsAndEndsAllEffects) {
   const auto outsider = connect();
   const int step = client->send("control.step", {{"ticks", 1000}});
   server.stop();

@@ -211,7 +211,7 @@ TEST_F(Restart, CommandsThatCannotBeLoggedAreRefusedAndCounted) {
 }
 
 // A data folder of schema version 1 that contains a session with a held ball after 50 ticks.
-TEST(StoredByVersion1, ComesBackAsItWas) {
+TEST(StoredByVersion1, IsReadUnchanged) {
   const TemporaryFolder temporary;
   const std::string folder = temporary.file("data");
   std::filesystem::create_directories(folder);

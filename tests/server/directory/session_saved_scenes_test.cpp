@@ -32,7 +32,7 @@ class SavedScenesTest : public SavedStatesTest {
                   "shape": {"type": "sphere", "radius": 0.1}}]})");
 };
 
-TEST_P(SavedScenesTest, AreUsedWhereThoseOfTheCatalogueAre) {
+TEST_P(SavedScenesTest, AreUsedLikeThoseOfTheCatalogue) {
   save("my ball");
   const Json entry = listed("my ball");
   ASSERT_TRUE(entry.is_object());

@@ -16,7 +16,7 @@ using testing::HasSubstr;
 
 const Json kFirst = {{"name", "first"}};
 
-TEST_P(SavedStatesTest, ALoadGoesOnExactly) {
+TEST_P(SavedStatesTest, ALoadContinuesExactly) {
   host->client->result("control.reset");
   const std::string start = host->hash();
   client().result("world.set_gravity", {{"gravity", {1, 0, -9}}});

@@ -199,7 +199,7 @@ TEST_F(FrameWindowTest, TheLeastIsForgottenAfterTwentySeconds) {
   EXPECT_DOUBLE_EQ(window.delays().least.count(), 0.1);
 }
 
-TEST(FrameGroups, AllWhereThereAreFew) {
+TEST(FrameGroups, AllIfThereAreFew) {
   EXPECT_THAT(choose_groups({}, 8), ElementsAre());
   const std::vector<GroupClaim> claims = {{1, 0}, {5, 0}, {3, 9}};
   EXPECT_THAT(choose_groups(claims, 3), ElementsAre(1, 2, 0)) << "largest first";

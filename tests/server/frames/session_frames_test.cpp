@@ -135,7 +135,7 @@ TEST_F(SessionFrames, AnAcknowledgementNamesTheTickWhileThereIsASession) {
   EXPECT_EQ(client->result("frames.ack", {{"number", 1}}), Json::object());
 }
 
-TEST_F(SessionFrames, NoFrameOfAnEndedEpochComesAfterTheDescription) {
+TEST_F(SessionFrames, NoFrameOfAnEndedEpochFollowsTheDescription) {
   client->result("frames.subscribe");
   for (int i = 0; i < 10; ++i) {
     client->result("control.step", {{"ticks", 10}});  // the window fills, so one frame is omitted

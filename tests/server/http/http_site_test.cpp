@@ -262,7 +262,7 @@ TEST_F(HttpSite, ReadyMeansThatSessionsCanBeCreated) {
   }
 }
 
-TEST_F(HttpSite, WithoutAViewerTheRootSaysHowToBuildIt) {
+TEST_F(HttpSite, WithoutAViewerTheRootExplainsItsBuild) {
   const HttpHandler empty = make_site(folder.path() / "none");
   EXPECT_EQ(empty({"GET", "/"}).status, 503);
   EXPECT_THAT(empty({"GET", "/"}).body, HasSubstr("./vat serve"));

@@ -14,7 +14,7 @@
 namespace vat::test::replay_session_recording_test {
 namespace {
 
-TEST_F(ReplaySession, ComesBackFromItsFile) {
+TEST_F(ReplaySession, IsRestoredFromItsFile) {
   live();
   const std::string file = exported();
   TestClient carl(server_, 3);

@@ -129,7 +129,7 @@ TEST_F(ReplaySession, BeginsAnEpochWithEverySeek) {
   }
 }
 
-TEST_F(ReplaySession, TellsOfItsPeopleTenTimesASecondAtMost) {
+TEST_F(ReplaySession, SendsItsPeopleTenTimesASecondAtMost) {
   live();
   open();
   constexpr int kSeeks = 10;
@@ -167,7 +167,7 @@ TEST_F(ReplaySession, ARunIsNotEndedByASceneThatWasRefused) {
   EXPECT_EQ(bob_->result("replay.seek", {{"tick", 13}}).at("position"), position_);
 }
 
-TEST_F(ReplaySession, GoesOnFromAStateThatWasLoaded) {
+TEST_F(ReplaySession, ContinuesFromALoadedState) {
   note();
   step(3);
   ann_->result("session.save", {{"name", "third"}});

@@ -68,7 +68,7 @@ const std::vector<Limit>& limit_table() {
       {"frame_patience_seconds", "frame_patience_seconds",
        "Outbox.AClientWithoutAcknowledgementsIsClosedAfterThePatience"},
       {"grab_idle_seconds", "grab_idle_seconds", "IdleGrabs.EndAndThoseThatMoveDoNot"},
-      {"presence", nullptr, "Presence.TellsOfAHundredAtMost"},
+      {"presence", nullptr, "Presence.HasAHundredParticipantsAtMost"},
       {"connections_listed", nullptr, "StateConnections.AreAsManyAsWereAskedForAtMost"},
       {"tokens", "max_tokens", "AccessTokens.AreBoundedAndOldOnesMakeRoom"},
       {"resume_seconds", "resume_seconds", "AwayForAMoment.LeaveAndReleaseTheirGrabs"},

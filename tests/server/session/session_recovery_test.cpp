@@ -213,7 +213,7 @@ TEST_F(SessionRecoveryTest, ADamagedCheckpointIsPassedOver) {
   EXPECT_EQ(life->hash(), before);
 }
 
-TEST_F(SessionRecoveryTest, ASessionThatComesBackInAnotherStateStandsStillAndTellsSo) {
+TEST_F(SessionRecoveryTest, ASessionRestoredInAnotherStateIsPausedAndReported) {
   begin();
   client().result("control.pause");
   client().result("control.step", {{"ticks", 10}});
@@ -238,7 +238,7 @@ TEST_F(SessionRecoveryTest, ASessionThatComesBackInAnotherStateStandsStillAndTel
   EXPECT_TRUE(client().events("session.diverged").empty());
 }
 
-TEST_F(SessionRecoveryTest, ALostSessionStaysInItsFolderAndIsTold) {
+TEST_F(SessionRecoveryTest, ALostSessionStaysInItsFolderAndIsReported) {
   begin();
   client().result("control.pause");
   life.reset();
@@ -268,7 +268,7 @@ TEST_F(SessionRecoveryTest, ALostSessionStaysInItsFolderAndIsTold) {
   EXPECT_EQ(server.recover(), 1U);
 }
 
-TEST_F(SessionRecoveryTest, UntilASessionIsBackTheServerIsNotReadyAndSaysSo) {
+TEST_F(SessionRecoveryTest, DuringARecoveryTheServerReportsThatItIsNotReady) {
   begin();
   client().result("control.pause");
   client().result("control.step", {{"ticks", 1000}});

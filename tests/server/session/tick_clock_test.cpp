@@ -186,7 +186,7 @@ TEST_F(TickProfileTest, LooksAtTheShortestTicksNowAndThen) {
   EXPECT_EQ(looks(1000, 1ns), 10);
 }
 
-TEST_F(TickProfileTest, LooksMoreOftenWhereTicksGrowLonger) {
+TEST_F(TickProfileTest, SamplesMoreOftenDuringLongTicks) {
   looks(50, 1us);
   looks(100, 1ms);  // at least one sample
   EXPECT_EQ(looks(10, 1ms), 10);

@@ -124,7 +124,7 @@ TEST_F(StorageDatabase, UncommittedChangesAreNotStored) {
   EXPECT_EQ(database.number("SELECT count(*) FROM things"), 1);
 }
 
-TEST_F(StorageDatabase, AFullDiskUndoesTheTransactionAndIsToldByItsKind) {
+TEST_F(StorageDatabase, AFullDiskUndoesTheTransactionAndIsReportedByItsKind) {
   Database database = open_database(path, {kApplication, kOld}, Durability::process);
   database.number("PRAGMA max_page_count = 8");
   const std::string long_name(10'000, 'n');
@@ -232,7 +232,7 @@ TEST_F(StorageSessions, ClosedSessionsAreNotRestoredAndTheirNumbersNotReused) {
   EXPECT_GT(create(store), number);
 }
 
-TEST_F(StorageSessions, RefusedEntriesAreTold) {
+TEST_F(StorageSessions, RefusedEntriesAreMarked) {
   SessionStore store(path);
   const std::uint64_t number = create(store);
   store.append(number, entry(2, 1));
@@ -282,7 +282,7 @@ TEST_F(StorageSessions, ATrimmedLogKeepsRequiredEntries) {
   EXPECT_EQ(sequences(store, other).size(), 1U);
 }
 
-TEST_F(StorageSessions, EntriesOfOneCallAreWrittenTogetherOrNotAtAll) {
+TEST_F(StorageSessions, EntriesOfOneCallAreWrittenTogether) {
   SessionStore store(path);
   const std::uint64_t number = create(store);
   const std::vector<LogEntry> entries = {entry(2, 1), entry(3, 1),

@@ -65,7 +65,7 @@ TEST(StorageFolder, IsOneServersAtATime) {
   const DataFolder third(path);
 }
 
-TEST(StorageFolder, ThatCannotBeMadeIsToldByItsKind) {
+TEST(StorageFolder, ThatCannotBeCreatedIsReportedByItsKind) {
   try {
     const DataFolder folder("/proc/vat");  // not writable, even for root
     ADD_FAILURE() << "the folder was created";

@@ -80,7 +80,7 @@ TEST_P(TaskRunnerThreads, SeveralThrowingBlocksGiveOneException) {
 
 // Many runners at once, so that some helpers start late. A helper that missed the stop would never
 // end.
-TEST(TaskRunner, StopsWhereHelpersHaveHardlyBegun) {
+TEST(TaskRunner, StopsDuringTheStartOfHelpers) {
   std::vector<std::thread> owners;
   std::atomic<int> stopped = 0;
   constexpr int kOwners = 6;

@@ -62,7 +62,7 @@ TEST_F(TransportHttpTest, AHandlerThatThrowsGives500) {
   EXPECT_EQ(http(port, "GET", "/").status, 500);
 }
 
-TEST_F(TransportHttpTest, ABodyThatIsTooLongGets413AlthoughThePeerGoesOnSending) {
+TEST_F(TransportHttpTest, ABodyThatIsTooLongGets413WhileThePeerSends) {
   settings.max_http_request_bytes = 1000;
   start();
   EXPECT_EQ(http(port, "POST", "/", "Content-Length: 1000\r\n", std::string(1000, 'x')).status,

@@ -30,7 +30,7 @@ class TransportStopTest : public TransportTest {
   }
 };
 
-TEST_F(TransportStopTest, TellsEveryClient) {
+TEST_F(TransportStopTest, NotifiesEveryClient) {
   start();
   std::vector<std::unique_ptr<WsClient>> clients;
   std::atomic<int> told = 0;
