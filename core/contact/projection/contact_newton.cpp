@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/contact/projection/contact_solve.h"
+#include "core/contact/projection/cross_matrix.h"
 #include "core/support/check.h"
 
 namespace vat {
@@ -27,12 +28,6 @@ constexpr Real kInexact = 0.01;
 // Displacement in a step, in thresholds. It is far below the tolerance of the sweeps, because the
 // impulses are those with which the next steps start.
 constexpr Real kEnough = 1e-10;
-
-Mat3 cross_matrix(const Vec3& a) {
-  Mat3 m;
-  m << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
-  return m;
-}
 
 Index number_of(const ContactSolve& solve, const ContactEnd& end) {
   return end.rigid == kNoParticle ? end.particle : solve.model().free_count + end.rigid;
