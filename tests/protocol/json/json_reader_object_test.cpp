@@ -194,6 +194,23 @@ TEST_F(ObjectReaderTest, RefusesMembersThatNobodyAskedFor) {
   EXPECT_EQ(errors[1].code, "unknown_member");
 }
 
+TEST_F(ObjectReaderTest, SuggestsMembersThatAreNotGiven) {
+  ObjectReader& asked = read(R"({"radus": 1, "mas": 2, "mass": 3, "colour": 4})");
+  for (const char* name : {"radius", "mass", "name"}) asked.member(name);
+  asked.refuse_unknown();
+  ASSERT_EQ(errors.size(), 3U);
+  EXPECT_EQ(errors[0].suggestion, "");
+  EXPECT_EQ(errors[1].suggestion, "") << "mass is given";
+  EXPECT_EQ(errors[2].suggestion, "radius");
+  EXPECT_EQ(errors[2].message, "is not a known member; did you mean \"radius\"?");
+}
+
+TEST_F(ObjectReaderTest, SuggestsNamesOfAnEnumeration) {
+  read(R"({"kind": "riged"})").choice("kind", {"liquid", "rigid"});
+  ASSERT_EQ(errors.size(), 1U);
+  EXPECT_EQ(errors[0].suggestion, "rigid");
+}
+
 TEST_F(ObjectReaderTest, AValueThatIsNoObjectIsOneError) {
   for (const char* text : {"[]", "null", "3", "\"x\""}) {
     ObjectReader& wrong = read(text);

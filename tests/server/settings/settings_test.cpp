@@ -70,7 +70,7 @@ TEST_F(Settings, AnUnknownNameIsToldWithTheNearestAndAll) {
   const Status applied = apply_text(R"({"max_conections": 3, "port": 5})");
   ASSERT_FALSE(applied);
   EXPECT_EQ(applied.errors().front().path, "/max_conections");
-  EXPECT_THAT(applied.errors().front().message, HasSubstr("nearest is max_connections,"));
+  EXPECT_THAT(applied.errors().front().message, HasSubstr("did you mean \"max_connections\"?"));
   EXPECT_THAT(applied.errors().front().message, HasSubstr("port, "));
   EXPECT_EQ(target.port, 8080) << "a file with an error sets nothing";
 }
