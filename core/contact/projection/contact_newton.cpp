@@ -327,8 +327,8 @@ std::size_t ContactNewton::prepare(const ContactSolve& solve,
   // If a contact slides faster, in thresholds per step and times its friction, nine of ten runs for
   // a wall of bricks do not converge: the lifts and the impulses change each other.
   constexpr Real kFastest = 1e-3;
-  // Costs on one core, relative to a round of sweeps, which takes about 125 ns per contact. More
-  // contacts change their state in a wide island, which takes more steps.
+  // Costs on one core, relative to a round of sweeps. More contacts change their state in a wide
+  // island, which takes more steps.
   constexpr Real kStepsPerHeight = 2;
   constexpr Real kAssembly = 2;
   constexpr Real kBlockOfFactor = 0.07;
