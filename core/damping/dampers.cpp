@@ -51,6 +51,7 @@ void DampingMatrix::collect(const StepContext& c, bool viscosity) {
   is_viscous_ = viscosity && !is_coupled && has_viscosity(model);
   collect_own(c, viscosity);
   if (is_viscous_) collect_viscosity(c);
+  collect_blocks(c);
   collect_rigid(c);
 }
 
@@ -73,6 +74,19 @@ void DampingMatrix::collect_own(const StepContext& c, bool viscosity) {
       block.close(i);
     }
   });
+}
+
+void DampingMatrix::collect_blocks(const StepContext& c) {
+  const Model& model = c.model;
+  blocks_.clear();
+  for (std::size_t b = 0; b < block_count(model.particle_count); ++b) {
+    const std::size_t begin = b * kBlockSize;
+    bool has_rows = has_liquid_drags_ || (is_viscous_ && begin < model.liquid_count) ||
+                    (!model.spring_ends.empty() && begin < model.free_count &&
+                     begin + kBlockSize > model.liquid_count);
+    for_kept_blocks(c, b, [&](const DamperBlock& block) { has_rows |= !block.rows.empty(); });
+    if (has_rows) blocks_.push_back(b);
+  }
 }
 
 void DampingMatrix::collect_rigid(const StepContext& c) {
@@ -178,7 +192,9 @@ void DampingMatrix::multiply(const StepContext& c, const std::vector<Vec3>& w,
   LiquidScratch& buffers = c.work.of<LiquidScratch>();
   const Model& model = c.model;
   VAT_CHECK(w.size() == c.model.particle_count && force.size() == c.model.particle_count);
-  for_blocks(c.runner, model.particle_count, [&](std::size_t begin, std::size_t end) {
+  for_blocks<1>(c.runner, blocks_.size(), [&](std::size_t n, std::size_t) {
+    const std::size_t begin = blocks_[n] * kBlockSize;
+    const std::size_t end = std::min<std::size_t>(model.particle_count, begin + kBlockSize);
     std::fill(force.begin() + static_cast<std::ptrdiff_t>(begin),
               force.begin() + static_cast<std::ptrdiff_t>(end), Vec3::Zero());
     const Index springs_begin = std::max(static_cast<Index>(begin), model.liquid_count);

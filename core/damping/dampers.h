@@ -20,13 +20,16 @@ class DampingMatrix {
   /// settling drag of liquids.
   void collect(const StepContext& context, bool viscosity);
 
+  /// Returns the blocks of particles that may have nonzero rows of D, in ascending order.
+  const std::vector<std::size_t>& blocks() const { return blocks_; }
+
   /// Returns the rigid particles with nonzero rows of D, in ascending order.
   const std::vector<Index>& rigid_particles() const { return rigid_; }
 
-  /// Computes force = D w, by particle. Of the entries of rigid particles in `w`, only those of
-  /// rigid_particles() are used. `spins` are the angular velocities of w, by rigid body. `torque`
-  /// is the torque of friction on rigid particles about their centres; it is written only if there
-  /// is friction.
+  /// Computes force = D w, by particle, for the particles of blocks(). Of the entries of rigid
+  /// particles in `w`, only those of rigid_particles() are used. `spins` are the angular velocities
+  /// of w, by rigid body. `torque` is the torque of friction on rigid particles about their
+  /// centres; it is written only if there is friction.
   void multiply(const StepContext& context, const std::vector<Vec3>& w,
                 const std::vector<Vec3>& spins, std::vector<Vec3>& force,
                 std::vector<Vec3>& torque);
@@ -34,6 +37,7 @@ class DampingMatrix {
  private:
   void collect_own(const StepContext& context, bool viscosity);
   void collect_viscosity(const StepContext& context);
+  void collect_blocks(const StepContext& context);
   void collect_rigid(const StepContext& context);
   /// Calls visit(dampers) for the dampers of a block of particles.
   template <class F>
@@ -42,7 +46,8 @@ class DampingMatrix {
   bool has_own_ = false;
   bool has_liquid_drags_ = false;  ///< viscosity of coupled liquids
   bool is_viscous_ = false;        ///< viscosity of other liquids
-  std::vector<DamperBlock> own_;   ///< liquid particles, without viscosity
+  std::vector<std::size_t> blocks_;
+  std::vector<DamperBlock> own_;  ///< liquid particles, without viscosity
   std::vector<Index> rigid_;
   std::vector<std::vector<Real>>
       viscosities_;            ///< mu V_i V_j laplacian W, in the order of liquid_pairs [N s/m]

@@ -31,19 +31,34 @@ void resize(const Model& model, Motion& motion) {
   motion.angular.resize(model.rigid_bodies.size());
 }
 
-/// The sum of f(i) over free particles, in blocks in their order.
-template <class Sums, class F>
-Sums sum_over_particles(const Equation& eq, std::vector<Sums>& partial, F&& f) {
-  const Index count = eq.model().free_count;
-  partial.assign(block_count(count), Sums{});
-  for_blocks(eq.context.runner, count, [&](std::size_t begin, std::size_t end) {
-    Sums sum{};
-    for (std::size_t i = begin; i < end; ++i) f(i, sum);
-    partial[begin / kBlockSize] = sum;
+/// Calls f(n, begin, end) for the free particles [begin, end) of the n-th block with damping. The
+/// other free particles have w = v - at = M^-1 r, and no equation has to be solved for them.
+template <class F>
+void for_damped_blocks(const Equation& eq, F&& f) {
+  const std::vector<std::size_t>& blocks = eq.scratch.matrix.blocks();
+  for_blocks<1>(eq.context.runner, blocks.size(), [&](std::size_t n, std::size_t) {
+    const std::size_t begin = blocks[n] * kBlockSize;
+    f(n, begin, std::min<std::size_t>(begin + kBlockSize, eq.model().free_count));
   });
+}
+
+template <class Sums>
+Sums total_of(const std::vector<Sums>& partial) {
   Sums total{};
   for (const Sums& sum : partial) total += sum;
   return total;
+}
+
+/// The sum of f(i) over the particles of for_damped_blocks(), in blocks in their order.
+template <class Sums, class F>
+Sums sum_over_particles(const Equation& eq, std::vector<Sums>& partial, F&& f) {
+  partial.assign(eq.scratch.matrix.blocks().size(), Sums{});
+  for_damped_blocks(eq, [&](std::size_t n, std::size_t begin, std::size_t end) {
+    Sums sum{};
+    for (std::size_t i = begin; i < end; ++i) f(i, sum);
+    partial[n] = sum;
+  });
+  return total_of(partial);
 }
 
 void find_inertias(const Equation& eq) {
@@ -170,7 +185,7 @@ void turn_direction(const Equation& eq, Real share) {
   const std::vector<DampedBody>& bodies = eq.scratch.bodies;
   const Motion& r = eq.scratch.residual;
   Motion& p = eq.scratch.direction;
-  for_blocks(eq.context.runner, model.free_count, [&](std::size_t begin, std::size_t end) {
+  for_damped_blocks(eq, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       p.particle[i] = model.inverse_mass[i] * r.particle[i] + share * p.particle[i];
     }
@@ -189,10 +204,16 @@ Real permitted_error(const Equation& eq) {
   const auto add = [](MomentSums& sums, Real mass, const Vec3& velocity) {
     sums += {mass, mass * velocity, mass * velocity.squaredNorm()};
   };
-  MomentSums total =
-      sum_over_particles(eq, eq.scratch.moments, [&](std::size_t i, MomentSums& sums) {
-        if (model.inverse_mass[i] > 0) add(sums, model.mass[i], at.velocity[i]);
-      });
+  std::vector<MomentSums>& partial = eq.scratch.moments;
+  partial.assign(block_count(model.free_count), {});
+  for_blocks(eq.context.runner, model.free_count, [&](std::size_t begin, std::size_t end) {
+    MomentSums sums;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (model.inverse_mass[i] > 0) add(sums, model.mass[i], at.velocity[i]);
+    }
+    partial[begin / kBlockSize] = sums;
+  });
+  MomentSums total = total_of(partial);
   for (std::size_t b = 0; b < eq.scratch.bodies.size(); ++b) {
     const DampedBody& body = eq.scratch.bodies[b];
     if (body.inverse_mass > 0) add(total, body.mass, at.rigid[b].momentum * body.inverse_mass);
@@ -310,9 +331,9 @@ void solve_damping(const ForceModel& f, const Configuration& from, Configuration
                                  return Vec3(from.velocity[i] - at.velocity[i]);
                                }));
   if (f.report != nullptr) f.report->iterations.damping += static_cast<std::uint64_t>(products);
-  for (Index i = 0; i < f.model.free_count; ++i) {
-    forces.particle[i] += scratch.force.particle[i];
-  }
+  for_damped_blocks(eq, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) forces.particle[i] += scratch.force.particle[i];
+  });
   for (std::size_t r = 0; r < f.model.rigid_bodies.size(); ++r) {
     if (f.model.rigid_bodies[r].is_held(f.step)) continue;
     apply_axle(f.model.rigid_bodies[r], scratch.force.linear[r], scratch.force.angular[r]);

@@ -37,9 +37,6 @@ struct ContactConstraint {
   Vec3 friction_impulse = Vec3::Zero();  ///< impulse perpendicular to the normal [N s]
   ContactImpulse last{};                 ///< forces of the last step
   Vec3 drift = Vec3::Zero();             ///< impulse at the start of the step [N s]
-  // Vectors of the conjugate gradient method [N s]:
-  Vec3 gradient = Vec3::Zero();
-  Vec3 direction = Vec3::Zero();
 
   Vec3 impulse() const { return push * normal + friction_impulse; }  ///< on the first end [N s]
   std::uint64_t other() const {

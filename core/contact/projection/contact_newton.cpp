@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/contact/projection/contact_solve.h"
+#include "core/contact/projection/cross_matrix.h"
 #include "core/support/check.h"
 
 namespace vat {
@@ -27,12 +28,6 @@ constexpr Real kInexact = 0.01;
 // Displacement in a step, in thresholds. It is far below the tolerance of the sweeps, because the
 // impulses are those with which the next steps start.
 constexpr Real kEnough = 1e-10;
-
-Mat3 cross_matrix(const Vec3& a) {
-  Mat3 m;
-  m << 0, -a.z(), a.y(), a.z(), 0, -a.x(), -a.y(), a.x(), 0;
-  return m;
-}
 
 Index number_of(const ContactSolve& solve, const ContactEnd& end) {
   return end.rigid == kNoParticle ? end.particle : solve.model().free_count + end.rigid;
@@ -332,8 +327,8 @@ std::size_t ContactNewton::prepare(const ContactSolve& solve,
   // If a contact slides faster, in thresholds per step and times its friction, nine of ten runs for
   // a wall of bricks do not converge: the lifts and the impulses change each other.
   constexpr Real kFastest = 1e-3;
-  // Costs on one core, relative to a round of sweeps, which takes about 125 ns per contact. More
-  // contacts change their state in a wide island, which takes more steps.
+  // Costs on one core, relative to a round of sweeps. More contacts change their state in a wide
+  // island, which takes more steps.
   constexpr Real kStepsPerHeight = 2;
   constexpr Real kAssembly = 2;
   constexpr Real kBlockOfFactor = 0.07;

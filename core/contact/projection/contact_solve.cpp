@@ -1,9 +1,14 @@
 #include "core/contact/projection/contact_solve.h"
 
 #include <algorithm>
+#include <atomic>
+#include <ranges>
 
+#include "core/contact/projection/cross_matrix.h"
+#include "core/contact/projection/sweep_progress.h"
 #include "core/laws/pair_direction.h"
 #include "core/support/check.h"
+#include "core/support/parallel.h"
 
 namespace vat {
 namespace {
@@ -81,6 +86,12 @@ Real ContactSolve::mobility(const ContactEnd& end, const Vec3& direction) const 
   return end.inverse_mass + lever.dot(rigid[end.rigid].inverse_inertia * lever);
 }
 
+void ContactSolve::add_momentum(const ContactEnd& end, const Vec3& impulse) const {
+  if (end.inverse_mass == 0 || end.rigid == kNoParticle) return;
+  at.rigid[end.rigid].momentum += impulse;
+  at.rigid[end.rigid].angular_momentum += end.arm.cross(impulse);
+}
+
 void ContactSolve::apply(const ContactEnd& end, const Vec3& impulse) {
   if (end.inverse_mass == 0) return;
   VAT_CHECK(end.rigid == kNoParticle || end.rigid < rigid.size());
@@ -88,41 +99,21 @@ void ContactSolve::apply(const ContactEnd& end, const Vec3& impulse) {
     at.velocity[end.particle] += end.inverse_mass * impulse;
     return;
   }
-  const Vec3 turning = end.arm.cross(impulse);
-  at.rigid[end.rigid].momentum += impulse;
-  at.rigid[end.rigid].angular_momentum += turning;
+  add_momentum(end, impulse);
   RigidMotion& motion = rigid[end.rigid];
   motion.velocity += end.inverse_mass * impulse;
-  motion.spin += motion.inverse_inertia * turning;
+  motion.spin += motion.inverse_inertia * end.arm.cross(impulse);
 }
 
 Vec3 ContactSolve::slip(const ContactConstraint& contact) const {
   if (contact.wall < 0) return velocity(contact.ends[0]) - velocity(contact.ends[1]);
-  const Wall& wall = model().scene.vat->walls[static_cast<std::size_t>(contact.wall)];
-  return velocity(contact.ends[0]) - vat.velocity - wall.velocity;
+  return velocity(contact.ends[0]) - wall_velocity(contact);
 }
 
-/// The extrapolated impulses may violate the constraints; the next sweep corrects them.
-Real ContactSolve::extrapolate(std::vector<ContactConstraint>& constraints,
-                               std::span<const Index> island, Real last) {
-  Real size = 0;
-  for (const Index c : island) {
-    ContactConstraint& contact = constraints[c];
-    contact.gradient += contact.impulse();
-    size += contact.gradient.squaredNorm();
-  }
-  const Real share = size < last ? size / last : 0;
-  for (const Index c : island) {
-    ContactConstraint& contact = constraints[c];
-    const Vec3 impulse = share * contact.direction;
-    const Real along = impulse.dot(contact.normal);
-    contact.push += along;
-    contact.friction_impulse += impulse - along * contact.normal;
-    apply(contact.ends[0], impulse);
-    apply(contact.ends[1], -impulse);
-    contact.direction = impulse + contact.gradient;
-  }
-  return size;
+Vec3 ContactSolve::wall_velocity(const ContactConstraint& contact) const {
+  if (contact.wall < 0) return Vec3::Zero();
+  const Wall& wall = model().scene.vat->walls[static_cast<std::size_t>(contact.wall)];
+  return vat.velocity + wall.velocity;
 }
 
 void ContactSolve::start_from(ContactConstraint& contact, const Vec3& impulse) {
@@ -137,32 +128,164 @@ void ContactSolve::start_from(ContactConstraint& contact, const Vec3& impulse) {
   apply(contact.ends[1], before - contact.impulse());
 }
 
-Real ContactSolve::push(ContactConstraint& contact, Real change) {
-  if (change == 0) return 0;
-  const Vec3 impulse = change * contact.normal;
-  contact.push += change;
-  apply(contact.ends[0], impulse);
-  apply(contact.ends[1], -impulse);
-  return dt * contact.mobility * std::abs(change) / contact.threshold;
+SweepRow ContactSolve::make_row(const ContactConstraint& contact) const {
+  SweepRow row{.sides = {},
+               .normal = contact.normal,
+               .wall_velocity = wall_velocity(contact),
+               .mobility = Mat3::Zero(),
+               .normal_mobility = Vec3::Zero(),
+               .inverse_mobility = 1 / contact.mobility,
+               .scale = dt * contact.mobility / contact.threshold,
+               .friction = contact.friction,
+               .dt = dt,
+               .push = contact.push,
+               .friction_impulse = contact.friction_impulse,
+               .gradient = Vec3::Zero()};
+  for (const std::size_t k : {0U, 1U}) {
+    const ContactEnd& end = contact.ends[k];
+    SweepRow::Side& side = row.sides[k];
+    if (end.particle == kNoParticle) continue;
+    side.inverse_mass = end.inverse_mass;
+    row.mobility.diagonal().array() += end.inverse_mass;
+    if (end.rigid == kNoParticle) {
+      side.velocity = &at.velocity[end.particle];
+      continue;
+    }
+    RigidMotion& motion = rigid[end.rigid];
+    side.velocity = &motion.velocity;
+    side.spin = &motion.spin;
+    side.inverse_inertia = &motion.inverse_inertia;
+    side.arm = end.arm;
+    const Mat3 cross = cross_matrix(end.arm);
+    row.mobility -= cross * motion.inverse_inertia * cross;
+  }
+  row.normal_mobility = row.mobility * row.normal;
+  return row;
 }
 
-Real ContactSolve::apply_friction(ContactConstraint& contact) {
-  const Real limit = contact.friction * contact.push;
-  if (limit == 0 && contact.friction_impulse.isZero(0)) return 0;
-  const Vec3 velocity = slip(contact);
-  const Vec3 across = velocity - velocity.dot(contact.normal) * contact.normal;
-  const Real speed = across.norm();
-  const Vec3 direction = speed > 0 ? Vec3(across / speed) : Vec3(Vec3::Zero());
-  const Real yields = mobility(contact.ends[0], direction) + mobility(contact.ends[1], direction);
-  Vec3 wanted = contact.friction_impulse;
-  if (speed > 0) wanted -= across / yields;
-  const Real size = wanted.norm();
-  if (size > limit) wanted *= limit / size;
-  const Vec3 impulse = wanted - contact.friction_impulse;
-  contact.friction_impulse = wanted;
-  apply(contact.ends[0], impulse);
-  apply(contact.ends[1], -impulse);
-  return dt * contact.mobility * impulse.norm() / contact.threshold;
+void ContactSolve::store(const SweepRow& row, ContactConstraint& contact) const {
+  const Vec3 change = row.impulse() - contact.impulse();
+  contact.push = row.push;
+  contact.friction_impulse = row.friction_impulse;
+  add_momentum(contact.ends[0], change);
+  add_momentum(contact.ends[1], -change);
+}
+
+namespace {
+
+/// The extrapolated impulses may violate the constraints; the next sweep corrects them. Returns the
+/// squared norm of the gradients [N^2 s^2]. `last` is the result after the preceding sweeps, or 0
+/// after the first ones.
+Real extrapolate(std::span<SweepRow> rows, Real last) {
+  Real size = 0;
+  for (SweepRow& row : rows) {
+    row.gradient += row.impulse();
+    size += row.gradient.squaredNorm();
+  }
+  const Real share = size < last ? size / last : 0;
+  for (SweepRow& row : rows) {
+    const Vec3 impulse = share * row.direction;
+    row.direction = impulse + row.gradient;
+    if (share == 0) continue;
+    const Real along = impulse.dot(row.normal);
+    row.push += along;
+    row.friction_impulse += impulse - along * row.normal;
+    row.apply(impulse);
+  }
+  return size;
+}
+
+/// Relaxes the rows in order and in reverse order. Returns the greatest displacement of the ends of
+/// a contact, in thresholds.
+Real relax(std::span<SweepRow> rows) {
+  for (SweepRow& row : rows) row.gradient = -row.impulse();
+  Real greatest = 0;
+  for (SweepRow& row : rows) greatest = std::max(greatest, row.relax());
+  for (SweepRow& row : std::views::reverse(rows)) greatest = std::max(greatest, row.relax());
+  return greatest;
+}
+
+void raise(std::atomic<std::size_t>& greatest, std::size_t value) {
+  std::size_t known = greatest;
+  while (known < value && !greatest.compare_exchange_weak(known, value)) {
+  }
+}
+
+}  // namespace
+
+ContactSolve::IslandResult ContactSolve::sweep_island(
+    std::vector<ContactConstraint>& constraints, std::span<const Index> island, std::size_t most,
+    ContactNewtonScratch& scratch, std::size_t block, const SetExcess& set_excess) {
+  constexpr Real kTolerance = 1e-8;
+  constexpr int kMaxRuns = 2;
+  // A prediction from fewer rounds than this part of the cost is not reliable enough.
+  constexpr std::size_t kPatience = 6;
+  ContactNewtonScratch::Block& own = scratch.blocks[block];
+  const auto load = [&] {
+    own.rows.clear();
+    for (const Index c : island) {
+      own.rows.push_back(make_row(constraints[c]));
+      set_excess(constraints[c], own.rows.back());
+    }
+  };
+  const auto store_all = [&] {
+    for (std::size_t n = 0; n < island.size(); ++n) store(own.rows[n], constraints[island[n]]);
+  };
+  load();
+  SweepProgress progress(kTolerance);
+  IslandResult result;
+  int runs = 0;
+  Real last = 0;
+  for (std::size_t round = 1, last_round = most; round <= last_round; ++round) {
+    const Real change = relax(own.rows);
+    result.iterations += 2;
+    result.is_solved = change <= kTolerance;
+    if (result.is_solved) break;
+    progress.add(change);
+    if (progress.has_prediction() && runs < kMaxRuns) {
+      store_all();
+      const std::size_t cost = own.newton.prepare(*this, constraints, island, scratch.place_of_end);
+      if (progress.rounds() >= cost || (kPatience * progress.rounds() >= cost &&
+                                        progress.rounds_left() > static_cast<Real>(cost))) {
+        own.excess.clear();
+        for (const SweepRow& row : own.rows) own.excess.push_back(row.excess(row.slip()));
+        result.iterations +=
+            own.newton.run(*this, constraints, island, own.excess, scratch.place_of_end);
+        load();
+        ++runs;
+        last_round = std::max(most, 2 * round);
+        last = 0;
+        progress.restart();
+        continue;
+      }
+    }
+    last = extrapolate(own.rows, last);
+  }
+  store_all();
+  return result;
+}
+
+bool ContactSolve::sweep(std::vector<ContactConstraint>& constraints, const ContactIslands& islands,
+                         ContactNewtonScratch& scratch, const SetExcess& set_excess) {
+  constexpr std::size_t kIslandsPerBlock = 8;
+  // The maximum number of operations is about equal for few and many contacts.
+  const std::size_t most =
+      std::clamp<std::size_t>(10'000 / std::max<std::size_t>(constraints.size(), 1), 50, 1000);
+  std::atomic<std::size_t> greatest = 0;
+  std::atomic<bool> all_solved = true;
+  scratch.place_of_end.resize(model().free_count + rigid.size());
+  scratch.blocks.resize((islands.count() + kIslandsPerBlock - 1) / kIslandsPerBlock);
+  for_blocks<kIslandsPerBlock>(
+      force_model.runner, islands.count(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t island = begin; island < end; ++island) {
+          const IslandResult result = sweep_island(constraints, islands[island], most, scratch,
+                                                   begin / kIslandsPerBlock, set_excess);
+          raise(greatest, result.iterations);
+          if (!result.is_solved) all_solved = false;
+        }
+      });
+  if (force_model.report != nullptr) force_model.report->iterations.contacts += greatest;
+  return all_solved;
 }
 
 }  // namespace vat

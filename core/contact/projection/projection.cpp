@@ -60,8 +60,33 @@ struct Gaps {
       return wall_distance(*model.scene.vat, vat, contact.wall, first) - contact.threshold;
     }
     const Vec3 x = first - position(contact.ends[1]);
-    return (model.periodic.any() ? model.periodic.nearest(x) : x).norm() - contact.threshold;
+    return between(x).norm() - contact.threshold;
   }
+
+  /// Sets the excess of a row to the gap, as a function of the velocities.
+  void set_excess(const ContactConstraint& contact, SweepRow& row) const {
+    row.kind = contact.wall >= 0 ? SweepRow::Excess::wall_gap : SweepRow::Excess::gap;
+    row.required = contact.threshold;
+    for (const std::size_t k : {0U, 1U}) {
+      const ContactEnd& end = contact.ends[k];
+      if (end.rigid == kNoParticle) continue;
+      row.sides[k].late_arm =
+          predicted.position[end.particle] - predicted.rigid[end.rigid].center_of_mass;
+    }
+    const SweepRow::Side& first = row.sides[0];
+    const Vec3 late = position(contact.ends[0]);
+    row.start = -dt * first.velocity_at(first.late_arm);
+    if (contact.wall >= 0) {
+      row.start += wall_distance(*model.scene.vat, vat, contact.wall, late) * contact.normal;
+    } else {
+      const SweepRow::Side& second = row.sides[1];
+      row.start +=
+          between(late - position(contact.ends[1])) + dt * second.velocity_at(second.late_arm);
+    }
+  }
+
+ private:
+  Vec3 between(const Vec3& x) const { return model.periodic.any() ? model.periodic.nearest(x) : x; }
 };
 
 }  // namespace
@@ -103,9 +128,9 @@ void ContactProjection::drift(const ForceModel& f, Configuration& now, Real time
   const Gaps gap{model, vat, now, start_, rigid_, predicted_, dt};
   islands_.find(model, constraints_);
   for (int round = 0; round < kMaxRounds; ++round) {
-    const bool is_solved =
-        solve.sweep(constraints_, islands_, newton_,
-                    [&](const ContactConstraint& contact) { return gap(contact) / dt; });
+    const bool is_solved = solve.sweep(
+        constraints_, islands_, newton_,
+        [&](const ContactConstraint& contact, SweepRow& row) { gap.set_excess(contact, row); });
     predict(f, now, dt);
     if (!is_solved) break;
     const bool is_met = std::ranges::all_of(constraints_, [&](const ContactConstraint& contact) {
@@ -142,8 +167,8 @@ void ContactProjection::finish(const ForceModel& f, Configuration& now, Real tim
     contact.parting = bounces ? -contact.restitution * contact.approach : 0;
   }
   islands_.find(model, constraints_);
-  solve.sweep(constraints_, islands_, newton_, [&](const ContactConstraint& contact) {
-    return solve.slip(contact).dot(contact.normal) - contact.parting;
+  solve.sweep(constraints_, islands_, newton_, [](const ContactConstraint& contact, SweepRow& row) {
+    row.required = contact.parting;
   });
   record(constraints_, dt, now.contacts);
 }

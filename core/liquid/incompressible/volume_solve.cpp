@@ -64,8 +64,10 @@ class VolumeSolve {
   }
 
   SolveReport project_velocities(const Vec3& wall_velocity);
-  /// Returns the number of iterations.
-  int shift_places();
+  /// Moves the particles so that their density decreases to the rest density. `mean_is_met`: the
+  /// mean density is within its tolerance, and only that of some particles is not. Returns the
+  /// number of iterations.
+  int shift_places(bool mean_is_met);
 
   // Required by Complementarity.
   void act(std::span<const Real> change) { response_.accelerate(change); }
@@ -139,14 +141,15 @@ SolveReport VolumeSolve::project_velocities(const Vec3& wall_velocity) {
   return report;
 }
 
-int VolumeSolve::shift_places() {
+int VolumeSolve::shift_places(bool mean_is_met) {
   each_slot([&](std::size_t s) {
     problem_.excess[s] = problem_.scale[s] * std::min(s_.relative_density[s] - 1, kMaxExpansion);
     problem_.x[s] = 0;
   });
   const IncompressibleSolve& wanted = f_.model.scene.incompressible;
   const Real tolerance = kLinearShare * wanted.density_tolerance;
-  const SolveReport report = solve({.mean = tolerance, .greatest = kGreatestOverMean * tolerance});
+  const SolveReport report = solve({.mean = mean_is_met ? wanted.density_tolerance : tolerance,
+                                    .greatest = kGreatestOverMean * tolerance});
   if (report.iterations > 0) response_.shift(dt_ * dt_);
   return report.iterations;
 }
@@ -202,11 +205,11 @@ void correct_density(const ForceModel& f, State& state, Real time) {
     hold_liquid_inside(f, time, now);
     find_density(c);
     measure_excess(c, report);
-    const bool is_solved =
-        report.mean <= tolerance && report.greatest <= kGreatestOverMean * tolerance;
+    const bool mean_is_met = report.mean <= tolerance;
+    const bool is_solved = mean_is_met && report.greatest <= kGreatestOverMean * tolerance;
     if (is_solved || round == kMaxCorrections || f.work.of<LiquidScratch>().too_many_pairs) return;
     constexpr Real kUnit = 1;  // shifts take no time
-    report.iterations += VolumeSolve(f, now, kUnit, false).shift_places();
+    report.iterations += VolumeSolve(f, now, kUnit, false).shift_places(mean_is_met);
   }
 }
 

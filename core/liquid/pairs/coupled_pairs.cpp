@@ -149,32 +149,31 @@ void set_slope_weights(const StepContext& c) {
 
 ImageMotion::ImageMotion(const StepContext& c)
     : c_(c),
+      buffers_(c.work.of<LiquidScratch>()),
       motion_(vat::motion_of(c)),
       pressure_(c.model, motion_, Vec3::Zero()),
-      is_same_liquid_(!has_several_liquids(c.model)) {}
+      same_liquid_(has_several_liquids(c.model) ? nullptr : &liquid_of(c.model, 0)),
+      has_central_field_(c.model.scene.central_field.has_value()) {}
 
-PairMotion ImageMotion::operator()(const PairImage& image, const PairMotion& source) const {
-  LiquidScratch& buffers = c_.work.of<LiquidScratch>();
-  const Vec3 velocity = image.turn({source.vx, source.vy, source.vz});
-  const bool is_mirrored = image.axes[0] || image.axes[1] || image.axes[2];
-  // Without pressure, the weight of liquid beyond a wall adds no pressure.
-  const bool is_free = !c_.model.is_filled && source.pressure <= 0;
-  if (!is_mirrored || is_free) return vat::motion_of(source.pressure, velocity);
-  const Vec3 position = buffers.sources.place(image.source);
-  const bool is_first = is_same_liquid_ || image.source >= buffers.sources.first_solid();
+Real ImageMotion::pressure(const PairImage& image, Real source_pressure) const {
+  const PairSources& sources = buffers_.sources;
+  const Vec3 position = sources.place(image.source);
+  const bool is_liquid = image.source < sources.first_solid();
   const LiquidModel& liquid =
-      liquid_of(c_.model, is_first ? 0 : buffers.liquid.grid.order()[image.source]);
-  if (!c_.model.scene.central_field) {
+      same_liquid_ != nullptr
+          ? *same_liquid_
+          : liquid_of(c_.model, is_liquid ? buffers_.liquid.grid.order()[image.source] : 0);
+  if (!has_central_field_) {
     Vec3 way = Vec3::Zero();
     for (int axis = 0; axis < 3; ++axis) {
       const bool turns = image.axes[static_cast<std::size_t>(axis)];
       way[axis] = turns ? (image.offset[axis] - position[axis]) - position[axis] : 0;
     }
-    return vat::motion_of(pressure_.near(liquid, source.pressure, way), velocity);
+    return pressure_.near(liquid, source_pressure, way);
   }
   const Mirror mirror = image.mirror();
   const ImagePressure pressure(c_.model, motion_, mirror.place(position));
-  return vat::motion_of(pressure(liquid, source.pressure, position, mirror), velocity);
+  return pressure(liquid, source_pressure, position, mirror);
 }
 
 }  // namespace vat

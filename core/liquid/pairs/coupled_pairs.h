@@ -78,13 +78,24 @@ inline PairMotion motion_of(Real pressure, const Vec3& velocity) {
 class ImageMotion {
  public:
   explicit ImageMotion(const StepContext& c);
-  PairMotion operator()(const PairImage& image, const PairMotion& source) const;
+  PairMotion operator()(const PairImage& image, const PairMotion& source) const {
+    const Vec3 velocity = image.turn({source.vx, source.vy, source.vz});
+    const bool is_mirrored = image.axes[0] || image.axes[1] || image.axes[2];
+    // Without pressure, the weight of liquid beyond a wall adds no pressure.
+    const bool is_free = !c_.model.is_filled && source.pressure <= 0;
+    return motion_of(!is_mirrored || is_free ? source.pressure : pressure(image, source.pressure),
+                     velocity);
+  }
 
  private:
+  Real pressure(const PairImage& image, Real source_pressure) const;
+
   const StepContext& c_;
+  const LiquidScratch& buffers_;
   const VatMotion motion_;
-  const ImagePressure pressure_;  ///< uniform without a central field
-  const bool is_same_liquid_;     ///< all liquids have one material
+  const ImagePressure pressure_;    ///< uniform without a central field
+  const LiquidModel* same_liquid_;  ///< of all particles; null if liquids differ
+  const bool has_central_field_;
 };
 
 }  // namespace vat

@@ -129,7 +129,7 @@ Index PairSources::source_of(Index n) const {
   const auto group = std::ranges::find_if(
       images_, [&](const ImageGroup& one) { return n - one.first < one.count(); });
   VAT_CHECK(group != images_.end());
-  return group->image(n - group->first).source;
+  return group->all[n - group->first].source;
 }
 
 void PairSources::find_images(const StepContext& c, Real reach, Images kind) {
@@ -158,7 +158,7 @@ void PairSources::find_images(const StepContext& c, Real reach, Images kind) {
   });
 }
 
-/// Collects the found images in one column, and sorts them.
+/// Collects the found images in one column, and finds their cells.
 void PairSources::join_images(const StepContext& c, Images kind) {
   LiquidScratch& buffers = c.work.of<LiquidScratch>();
   const bool is_solid = kind == shifted_solids || kind == mirrored_solids;
@@ -170,18 +170,17 @@ void PairSources::join_images(const StepContext& c, Images kind) {
     found_begin_.push_back(total);
     total += found.size();
   }
-  ImageGroup& group = images_[kind];
-  resize_closely(group.all, total);
+  resize_closely(image_list_, total);
   resize_closely(image_points_, total);
   for_blocks<1>(c.runner, found_.size(), [&](std::size_t b, std::size_t) {
     std::size_t k = found_begin_[b];
     for (const PackedImage& image : found_[b]) {
-      group.all[k] = image;
+      image_list_[k] = image;
       const Vec3 source = place_of(points, image.source - first);
       image_points_[k++] = offsets_.unpack(image).place(source);
     }
   });
-  group.grid.build(image_points_, pair_cell_size(c.model), c.runner);
+  images_[kind].grid.build(image_points_, pair_cell_size(c.model), c.runner);
 }
 
 void PairSources::set_places(const StepContext& c) {
@@ -197,11 +196,14 @@ void PairSources::set_places(const StepContext& c) {
   if (images_begin_ > solids_) set(buffers.solids_in_liquid, solids_);
 }
 
-void PairSources::set_image_places(Images kind, TaskRunner* runner) {
-  const ImageGroup& group = images_[kind];
+/// Stores the found images and their positions in the order of their cells.
+void PairSources::sort_images(Images kind, TaskRunner* runner) {
+  ImageGroup& group = images_[kind];
   const std::span<const Index> order = group.grid.order();
+  resize_closely(group.all, order.size());
   for_blocks(runner, group.count(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
+      group.all[s] = image_list_[order[s]];
       set_place(group.first + s, image_points_[order[s]]);
     }
   });
@@ -225,7 +227,7 @@ void PairSources::set_weights(const StepContext& c, const WeightFactors& factors
   for (const ImageGroup& group : images_) {
     for_blocks(c.runner, group.count(), [&](std::size_t begin, std::size_t end) {
       for (std::size_t s = begin; s < end; ++s) {
-        set_weight(group.first + s, weight(group.image(s).source));
+        set_weight(group.first + s, weight(group.all[s].source));
       }
     });
   }
@@ -352,9 +354,9 @@ void PairSources::build(const StepContext& c, Real reach) {
     }
     find_images(c, reach, kind);
     join_images(c, kind);
-    end += static_cast<Index>(images_[kind].count());
+    end += static_cast<Index>(image_list_.size());
     make_room(end);
-    set_image_places(kind, c.runner);
+    sort_images(kind, c.runner);
   }
   count_ = end;
   VAT_CHECK(images_begin_ <= count_ &&

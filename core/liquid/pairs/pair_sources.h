@@ -97,7 +97,7 @@ class PairSources {
     for (const ImageGroup& group : images_) {
       for_blocks(runner, group.count(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t s = begin; s < end; ++s) {
-          const PairImage& one = offsets_.unpack(group.image(s));
+          const PairImage& one = offsets_.unpack(group.all[s]);
           set_motion(group.first + s, image(one, motion(one.source)));
         }
       });
@@ -163,13 +163,11 @@ class PairSources {
 
  private:
   struct ImageGroup {
-    std::vector<PackedImage> all;  ///< in the order of their sources
+    std::vector<PackedImage> all;  ///< by slot of `grid`
     UniformGrid grid;
     Index first = 0;  ///< first source
 
     std::size_t count() const { return all.size(); }
-    /// Returns the image in a slot of `grid`.
-    const PackedImage& image(std::size_t slot) const { return all[grid.order()[slot]]; }
   };
   enum Images : std::uint8_t { shifted_solids, shifted_liquid, mirrored_solids, mirrored_liquid };
   static constexpr std::array kAllImages = {shifted_solids, shifted_liquid, mirrored_solids,
@@ -204,7 +202,7 @@ class PairSources {
     for (const ImageGroup& group : images_) {
       for_blocks(runner, group.count(), [&](std::size_t begin, std::size_t end) {
         for (std::size_t s = begin; s < end; ++s) {
-          charges[group.first + s].weight = charges[group.image(s).source].weight;
+          charges[group.first + s].weight = charges[group.all[s].source].weight;
         }
       });
     }
@@ -213,7 +211,7 @@ class PairSources {
   void make_room(std::size_t count);
   void set_place(std::size_t n, const Vec3& place);
   void set_places(const StepContext& c);
-  void set_image_places(Images kind, TaskRunner* runner);
+  void sort_images(Images kind, TaskRunner* runner);
   void add_padding(Real reach);
 
   bool is_single_ = true;           ///< true: the packed arrays are used; false: the others
@@ -232,7 +230,9 @@ class PairSources {
   ImageOffsets offsets_;
   std::vector<std::vector<PackedImage>> found_;  ///< by block of particles
   std::vector<std::size_t> found_begin_;  ///< by block of particles: index of its first image
-  std::vector<Vec3> image_points_;        ///< images of the last group that was found
+  // Images of the last group that was found, in the order of their sources:
+  std::vector<PackedImage> image_list_;
+  std::vector<Vec3> image_points_;
   SearchCoordinates search_;
   std::uint64_t version_ = 0;
   std::uint64_t charges_version_ = 0;  ///< version_ of the positions of the charges

@@ -12,21 +12,44 @@
 namespace vat {
 namespace {
 
+/// Counts the walls that are near to a point.
+class NearWalls {
+ public:
+  NearWalls(const Model& model, const VatMotion& motion, Real distance) {
+    low_.setConstant(-std::numeric_limits<Real>::infinity());
+    high_.setConstant(std::numeric_limits<Real>::infinity());
+    for (const int wall : model.walls) {
+      const int axis = wall / 2;
+      const Vat& vat = *model.scene.vat;
+      if (wall % 2 == 0) {
+        low_[axis] = vat.min[axis] + motion.offset[axis] + distance;
+      } else {
+        high_[axis] = vat.max[axis] + motion.offset[axis] - distance;
+      }
+    }
+  }
+  int count(const Vec3& place) const {
+    return static_cast<int>((place.array() < low_.array()).count() +
+                            (place.array() > high_.array()).count());
+  }
+
+ private:
+  Vec3 low_;
+  Vec3 high_;
+};
+
 /// The part of s_i to subtract, because a particle and its own images in walls, up to seven in a
 /// corner, must not exceed the density at rest. A single particle then has no pressure, and the
 /// mirror reflects it in a corner as at a face. With their pressure, it would be on a spring of up
 /// to six times c / h, and the step allows for half of that.
-Real own_excess(const StepContext& c, const VatMotion& motion, const LiquidModel& liquid,
-                std::size_t slot) {
+Real own_excess(const StepContext& c, const VatMotion& motion, const NearWalls& walls,
+                const LiquidModel& liquid, std::size_t slot) {
   const CellSortedPoints& points = c.work.of<LiquidScratch>().liquid;
   const Vec3 place(points.x[slot], points.y[slot], points.z[slot]);
   Real own = liquid.kernel.value(0);
   const Real volume = c.model.rest_volume[points.grid.order()[slot]];
   // An image adds at most the value at distance 0, and n walls have at most 2^n - 1 images.
-  const auto near = std::ranges::count_if(c.model.walls, [&](int wall) {
-    return wall_distance(*c.model.scene.vat, motion, wall, place) < liquid.support_radius / 2;
-  });
-  if (volume * own * static_cast<Real>(1 << near) <= 1) return 0;
+  if (volume * own * static_cast<Real>(1 << walls.count(place)) <= 1) return 0;
   // An image is as far beyond a wall, edge or corner as the particle is inside.
   for_each_mirror(c.model, motion, place, liquid.support_radius / 2, [&](const Mirror& mirror) {
     const Real r = (place - mirror.place(place)).norm();
@@ -69,6 +92,7 @@ void compute_tait_density(StepContext& c) {
   const Model& model = c.model;
   if (buffers.density_version == buffers.sources.version()) return;
   const VatMotion motion = motion_of(c);
+  const NearWalls walls(model, motion, support_of(model) / 2);
   const std::span<const Index> order = buffers.liquid.grid.order();
   buffers.density.resize(model.liquid_count);
   const PairSums& table = pair_sums_of(c);
@@ -80,7 +104,9 @@ void compute_tait_density(StepContext& c) {
     const Index i = order[slot];
     const Index material = model.material[i];
     Real sum = *sums * factor[material];
-    if (cluster.has_mirrored && sum > 1) sum -= own_excess(c, motion, liquid_of(model, i), slot);
+    if (cluster.has_mirrored && sum > 1) {
+      sum -= own_excess(c, motion, walls, liquid_of(model, i), slot);
+    }
     buffers.density[i] = rest_density[material] * sum;
   };
   if (model.is_incompressible && !has_solids(model)) {

@@ -163,6 +163,30 @@ TEST(DampingSolve, LightDampingNeedsNone) {
   EXPECT_FALSE(must_solve_damping(bound, kStep));
 }
 
+// The liquid feels bodies by its pressure only. It fills the first blocks.
+TEST(DampingSolve, LeavesOutBlocksWithoutDampers) {
+  Scene scene = make_damped_contacts();
+  scene.pressure_solver = PressureSolver::tait;
+  scene.materials.push_back(test::make_liquid("water", 1000, {400, 0, 0.2}));
+  const ParticleShape shape = test::make_particles(test::make_lattice(8, 8, 8, 0.1), 1);
+  scene.bodies.erase(scene.bodies.begin());  // the block, whose springs have dampers
+  scene.bodies[1].position.z() = scene.bodies[0].position.z() + 0.08;
+  scene.bodies.push_back(test::make_body("pool", BodyKind::liquid, "water", shape, 0.05));
+  scene.bodies.back().position = {5, 0, 0};
+  test::ForceProbe probe(scene);
+  ASSERT_EQ(probe.model().liquid_count, 2 * kBlockSize);
+  const Controls controls;
+  Workspace work;
+  work.keep_dampers = true;
+  const ForceModel f{probe.model(), controls, work};
+  State& state = probe.state();
+  f.evaluate(state.now, 0, state.forces);
+  DampingMatrix matrix;
+  matrix.collect({f.model, controls, 0, 0, state.now, state.forces, work, nullptr}, false);
+  EXPECT_EQ(matrix.blocks(), std::vector<std::size_t>{2});
+  EXPECT_FALSE(matrix.rigid_particles().empty());
+}
+
 TEST(DampingSolve, GivesTheSameBitsForAnyNumberOfThreads) {
   std::vector<std::uint64_t> hashes;
   for (const unsigned threads : {1U, 2U, 4U}) {
