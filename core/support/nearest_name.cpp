@@ -52,7 +52,8 @@ void NearestName::consider(std::string_view candidate) {
 }
 
 std::string NearestName::suggestion() const {
-  const bool is_near = distance_ <= (wrong_.size() + 2) / 3;
+  const std::size_t limit = wrong_.size() < 2 ? 0 : (wrong_.size() + 2) / 3;
+  const bool is_near = distance_ <= limit;
   return wrong_.size() <= kMaxSuggestedBytes && is_near ? nearest_ : std::string();
 }
 

@@ -28,8 +28,9 @@ class NearestName {
   /// Returns the first of the nearest candidates, or an empty text if there are no candidates.
   const std::string& nearest() const { return nearest_; }
   /// Returns nearest() if the user can have meant it, and otherwise an empty text. The distance is
-  /// then at most a third of the wrong name's length, rounded up. Names longer than
-  /// kMaxSuggestedBytes have no suggestion, because the search takes quadratic time.
+  /// then at most a third of the wrong name's length, rounded up. Names of one letter have no
+  /// suggestion. Names longer than kMaxSuggestedBytes have none either, because the search takes
+  /// quadratic time.
   std::string suggestion() const;
 
   static constexpr std::size_t kMaxSuggestedBytes = 64;

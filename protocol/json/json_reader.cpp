@@ -153,12 +153,14 @@ ObjectReader::ObjectReader(const Json& value, std::string path, Errors& errors)
   if (value_ == nullptr) add_error(errors, "wrong_type", path_, "must be an object");
 }
 
-bool ObjectReader::has(std::string_view key) const {
+bool ObjectReader::has(std::string_view key) {
+  suggested_.emplace_back(key);
   return value_ != nullptr && value_->contains(key);
 }
 
 const Json* ObjectReader::member(std::string_view key, bool required) {
   known_.emplace_back(key);
+  suggested_.emplace_back(key);
   if (value_ == nullptr) return nullptr;  // reported once, by the constructor
   const auto found = value_->find(key);
   if (found != value_->end()) return &*found;
@@ -249,8 +251,8 @@ const Json* ObjectReader::array(std::string_view key, std::size_t max, bool requ
 std::string ObjectReader::suggest_member(std::string_view key) const {
   if (errors_->size() >= kMaxSuggestions) return {};
   NearestName nearest(key);
-  for (const std::string& known : known_) {
-    if (!has(known)) nearest.consider(known);
+  for (const std::string& name : suggested_) {
+    if (!value_->contains(name)) nearest.consider(name);
   }
   return nearest.suggestion();
 }

@@ -67,7 +67,8 @@ class ObjectReader {
   /// `errors` must outlive the reader.
   ObjectReader(const Json& value, std::string path, Errors& errors);
 
-  bool has(std::string_view key) const;
+  /// Returns whether the member is present. Does not mark the key as known.
+  bool has(std::string_view key);
   /// Returns the member, or null if the member is absent. Adds an error if the member is absent and
   /// `required`. Marks the key as known.
   const Json* member(std::string_view key, bool required = false);
@@ -103,6 +104,7 @@ class ObjectReader {
   std::string path_;
   Errors* errors_;
   std::vector<std::string> known_;
+  std::vector<std::string> suggested_;  // names that has() was called with, or known
 };
 
 }  // namespace vat

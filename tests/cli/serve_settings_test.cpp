@@ -59,7 +59,8 @@ TEST(ServeSettings, AFileWithFaultsIsRefused) {
   const ProgramResult result = run_vat({"serve", "--config", folder.file("vat.json")});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_THAT(result.out, IsEmpty());
-  EXPECT_THAT(result.err, HasSubstr("vat.json: /prot: is not a setting; the nearest is port"));
+  EXPECT_THAT(result.err, HasSubstr("vat.json: /prot: is not a setting"));
+  EXPECT_THAT(result.err, HasSubstr("did you mean \"port\"?"));
   EXPECT_EQ(run_vat({"serve", "--config", folder.file("none.json")}).exit_code, 1);
 }
 

@@ -29,6 +29,7 @@ TEST(NearestName, IsSuggestedIfItCanBeMeant) {
            {"fly", {"control.play", "scene.list"}, ""},
            {"", {"a"}, ""},
            {"a", {}, ""},
+           {"a", {"b"}, ""},
            {std::string(64, 'x') + "y", {std::string(64, 'x')}, ""}}) {
     EXPECT_EQ(NearestName(each.wrong).consider_all(each.candidates, std::identity()).suggestion(),
               each.suggestion)
