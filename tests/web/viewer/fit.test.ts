@@ -1,7 +1,7 @@
-import { Box3, Vector3 } from 'three';
+import { Box3, PerspectiveCamera, Vector3 } from 'three';
 import { describe, expect, it } from 'vitest';
 import { framedBox } from '../../../web/viewer/view/base/framed';
-import { nearestEye } from '../../../web/viewer/view/base/fit';
+import { fitBox, nearestEye } from '../../../web/viewer/view/base/fit';
 import type { Seen } from '../../../web/viewer/view/base/fit';
 import { directionOf, firstDirection } from '../../../web/viewer/view/base/presets';
 
@@ -63,6 +63,24 @@ describe('firstDirection', () => {
     for (const depth of depths) {
       const { x, z } = directionTo(2, depth);
       expect(Math.min(x, z)).toBeGreaterThan(0.1);
+    }
+  });
+});
+
+describe('the first view of a long scene', () => {
+  it('is along it, so that its near end is larger', () => {
+    const box = new Box3(new Vector3(), new Vector3(9, 0.1, 1));
+    const from = firstDirection(box);
+    const camera = new PerspectiveCamera(32, 16 / 9);
+    camera.up.set(0, 0, 1);
+    const { target, distance } = fitBox(box, from, camera, 1);
+    const eye = target.addScaledVector(from, distance);
+    expect(2 * eye.distanceTo(box.min)).toBeLessThan(eye.distanceTo(box.max));
+  });
+
+  it('is from the right if it is high or deep', () => {
+    for (const size of [new Vector3(9, 0.1, 3), new Vector3(9, 3, 0.1)]) {
+      expect(firstDirection(new Box3(new Vector3(), size)).x).toBeGreaterThan(0);
     }
   });
 });
