@@ -28,6 +28,16 @@ it('asks anew at each standstill', () => {
   expect(ask).toHaveBeenCalledTimes(2);
 });
 
+it('asks anew for another scene at the same tick', () => {
+  const ask = vi.fn();
+  const whole = new WholePicture(ask);
+  for (const epoch of [1, 2]) {
+    whole.showFrame(header({ detail: 1, epoch }));
+    whole.showStatus({ playing: false, tick: 7 });
+  }
+  expect(ask).toHaveBeenCalledTimes(2);
+});
+
 it('waits for a frame that is on its way', () => {
   const ask = vi.fn();
   const whole = new WholePicture(ask);

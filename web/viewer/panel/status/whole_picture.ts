@@ -15,6 +15,8 @@ export class WholePicture {
   constructor(private readonly ask: () => void) {}
 
   showFrame(header: FrameHeader): void {
+    // Another scene can be paused at the same tick.
+    if (header.epoch !== this.shown?.epoch) this.askedTick = this.awaitedTick = undefined;
     this.shown = header;
   }
 
