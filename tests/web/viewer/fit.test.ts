@@ -1,6 +1,6 @@
 import { Box3, PerspectiveCamera, Vector3 } from 'three';
 import { describe, expect, it } from 'vitest';
-import { framedBox } from '../../../web/viewer/view/base/framed';
+import { framedBox, Framing } from '../../../web/viewer/view/base/framed';
 import { fitBox, nearestEye } from '../../../web/viewer/view/base/fit';
 import type { Seen } from '../../../web/viewer/view/base/fit';
 import { directionOf, firstDirection } from '../../../web/viewer/view/base/presets';
@@ -101,5 +101,33 @@ describe('framedBox', () => {
       ...expected.min,
       ...expected.max,
     ]);
+  });
+});
+
+describe('Framing', () => {
+  const box = new Box3(new Vector3(), new Vector3(1, 1, 1));
+  const larger = new Box3(new Vector3(), new Vector3(2, 2, 2));
+
+  it('follows the box until the camera is moved', () => {
+    const framing = new Framing();
+    expect(framing.follow(new Box3())).toBe(false);
+    expect(framing.box).toBeUndefined();
+    expect([framing.follow(box), framing.follow(box), framing.follow(larger)]).toEqual([
+      true,
+      false,
+      true,
+    ]);
+    framing.end();
+    expect(framing.follow(box)).toBe(false);
+    expect(framing.box).toBeUndefined();
+  });
+
+  it('frames a new scene whose first frame comes after a movement of the camera', () => {
+    const framing = new Framing();
+    framing.follow(box);
+    framing.begin();
+    framing.end(); // the orbit turns the camera before the first frame
+    expect(framing.follow(larger)).toBe(true);
+    expect(framing.box).toEqual(larger);
   });
 });
