@@ -62,7 +62,7 @@ give_network() {
 # Downloads packages without installing them.
 fetch_packages() {
   local names
-  names=$(awk '$1 ~ /^(build|web|test)$/ {print $2}' "$machine$checkout/docker/packages.txt")
+  names=$(awk '$1 ~ /^(build|web|test|try)$/ {print $2}' "$machine$checkout/docker/packages.txt")
   # shellcheck disable=SC2086 # one word for each package
   chroot "$machine" sh -c "apt-get update && apt-get install --yes --no-install-recommends \
     --download-only $(printf '%s ' $names)" >"$work/packages.log" 2>&1 ||

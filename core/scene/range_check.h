@@ -1,7 +1,10 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <utility>
 
+#include "core/support/nearest_name.h"
 #include "core/support/result.h"
 #include "core/types.h"
 
@@ -19,6 +22,13 @@ class RangeCheck {
   explicit RangeCheck(Errors& errors) : errors_(errors) {}
 
   void add(std::string code, std::string path, std::string message);
+  /// Adds an error unknown_name, with a suggestion from the projections of the elements.
+  template <class Range, class Projection>
+  void add_unknown(std::string path, std::string rule, std::string_view wrong, const Range& range,
+                   const Projection& name_of) {
+    errors_.push_back(
+        unknown_name(errors_, std::move(path), std::move(rule), wrong, range, name_of));
+  }
   /// Returns whether the value is in the inclusive range. A NaN is outside.
   bool real(Real value, Real min, Real max, const std::string& path);
   bool vector(const Vec3& value, Real min, Real max, const std::string& path);

@@ -10,6 +10,7 @@
 #include "core/simulation/simulation.h"
 #include "core/simulation/simulation_impl.h"
 #include "core/support/check.h"
+#include "core/support/nearest_name.h"
 #include "core/validation/validate.h"
 
 namespace vat {
@@ -72,7 +73,8 @@ Status HostInterface::remove_body(BodyId id) {
 Status HostInterface::set_emitter(std::string_view name, bool open) {
   const auto found = std::ranges::find(impl_->all().scene.emitters, name, &Emitter::name);
   if (found == impl_->all().scene.emitters.end()) {
-    return Error{"unknown_name", "/emitter", "must be the name of one of the scene's emitters"};
+    return unknown_name({}, "/emitter", "must be the name of one of the scene's emitters", name,
+                        impl_->all().scene.emitters, &Emitter::name);
   }
   const auto index = found - impl_->all().scene.emitters.begin();
   impl_->wake_all();

@@ -12,6 +12,7 @@
 #include <span>
 
 #include "core/support/check.h"
+#include "core/support/nearest_name.h"
 
 namespace vat {
 namespace {
@@ -85,7 +86,8 @@ void limit_instruction_sets(InstructionSet greatest) {
 Result<InstructionSet> parse_instruction_set(std::string_view name) {
   const auto set = std::ranges::find(kSets, name, [](InstructionSet s) { return to_string(s); });
   if (set != kSets.end()) return *set;
-  return Error{"unknown_name", "", "'" + std::string(name) + "' is not one of " + list(kSets)};
+  return unknown_name({}, "", "'" + std::string(name) + "' is not one of " + list(kSets), name,
+                      kSets, [](InstructionSet s) { return to_string(s); });
 }
 
 std::vector<InstructionSet> available_instruction_sets() {

@@ -15,6 +15,7 @@ struct Error {
   std::string code;
   std::string path;
   std::string message;
+  std::string suggestion = {};  ///< valid name near to the given one, or empty
 };
 using Errors = std::vector<Error>;
 

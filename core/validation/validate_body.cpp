@@ -12,8 +12,8 @@ const Material* check_material(const Scene& scene, const BodyDescription& body,
                                const std::string& path, RangeCheck& check) {
   const auto found = std::ranges::find(scene.materials, body.material, &Material::name);
   if (found == scene.materials.end()) {
-    check.add("unknown_name", path + "/material",
-              "must be the name of one of the scene's materials");
+    check.add_unknown(path + "/material", "must be the name of one of the scene's materials",
+                      body.material, scene.materials, &Material::name);
     return nullptr;
   }
   if (body.kind == BodyKind::liquid && !found->liquid) {

@@ -34,7 +34,8 @@ const BodyDescription* find_fed_body(const Scene& scene, const Emitter& emitter,
                                      const std::string& path, RangeCheck& check) {
   const auto body = std::ranges::find(scene.bodies, emitter.body, &BodyDescription::name);
   if (body == scene.bodies.end()) {
-    check.add("unknown_name", path, "must be the name of one of the scene's bodies");
+    check.add_unknown(path, "must be the name of one of the scene's bodies", emitter.body,
+                      scene.bodies, &BodyDescription::name);
     return nullptr;
   }
   const auto material = std::ranges::find(scene.materials, body->material, &Material::name);

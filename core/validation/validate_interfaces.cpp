@@ -87,8 +87,9 @@ void check_interface(const Scene& scene, const InterfaceDescription& interface,
                      const std::string& path, RangeCheck& check) {
   for (std::size_t side = 0; side < 2; ++side) {
     if (is_known(scene, interface.materials[side])) continue;
-    check.add("unknown_name", path + "/materials/" + std::to_string(side),
-              "must be \"vat\" or the name of one of the scene's materials");
+    check.add_unknown(path + "/materials/" + std::to_string(side),
+                      "must be \"vat\" or the name of one of the scene's materials",
+                      interface.materials[side], scene.materials, &Material::name);
   }
   if (interface.materials[0] == kVatMaterial && interface.materials[1] == kVatMaterial) {
     check.add("unknown_name", path + "/materials", "must name at least one of the materials");

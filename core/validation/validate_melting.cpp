@@ -20,7 +20,8 @@ void check_melting(const Scene& scene, const BodyDescription& body, const std::s
   const Real least_support = min_surface_support(scene.surface_model == SurfaceModel::cohesion);
   const auto material = std::ranges::find(scene.materials, into, &Material::name);
   if (material == scene.materials.end()) {
-    check.add("unknown_name", into_path, "must be the name of one of the scene's materials");
+    check.add_unknown(into_path, "must be the name of one of the scene's materials", into,
+                      scene.materials, &Material::name);
   } else if (!material->liquid) {
     check.add("not_liquid", into_path,
               "must be a material with liquid constants, since the body becomes liquid");

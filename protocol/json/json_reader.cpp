@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
+
+#include "core/support/nearest_name.h"
 
 namespace vat {
 namespace {
@@ -38,9 +41,12 @@ bool is_control(char c) {
 
 }  // namespace
 
+void add_error(Errors& errors, Error error) {
+  if (errors.size() < kMaxReadErrors) errors.push_back(std::move(error));
+}
+
 void add_error(Errors& errors, std::string code, std::string path, std::string message) {
-  if (errors.size() >= kMaxReadErrors) return;
-  errors.push_back({std::move(code), std::move(path), std::move(message)});
+  add_error(errors, Error{std::move(code), std::move(path), std::move(message)});
 }
 
 std::string pointer_to(std::string_view parent, std::string_view key) {
@@ -214,7 +220,12 @@ std::size_t ObjectReader::choose(std::string_view key, const Names& names,
     if (value->is_string() && value->get_ref<const std::string&>() == name) return position;
     rule += (position++ == 0 ? " \"" : ", \"") + std::string(name) + '"';
   }
-  add_error(*errors_, value->is_string() ? "unknown_name" : "wrong_type", path_of(key), rule);
+  if (value->is_string()) {
+    add_error(*errors_, unknown_name(*errors_, path_of(key), rule,
+                                     value->get_ref<const std::string&>(), names, std::identity()));
+  } else {
+    add_error(*errors_, "wrong_type", path_of(key), rule);
+  }
   return fallback.value_or(0);
 }
 
@@ -234,11 +245,22 @@ const Json* ObjectReader::array(std::string_view key, std::size_t max, bool requ
   return value == nullptr ? nullptr : to_array(*value, path_of(key), 0, max, *errors_);
 }
 
+/// Returns the known member that `key` can mean. Members that are given are not meant.
+std::string ObjectReader::suggest_member(std::string_view key) const {
+  if (errors_->size() >= kMaxSuggestions) return {};
+  NearestName nearest(key);
+  for (const std::string& known : known_) {
+    if (!has(known)) nearest.consider(known);
+  }
+  return nearest.suggestion();
+}
+
 void ObjectReader::refuse_unknown() {
   if (value_ == nullptr) return;
   for (const auto& [key, value] : value_->items()) {
     if (std::find(known_.begin(), known_.end(), key) == known_.end()) {
-      add_error(*errors_, "unknown_member", path_of(key), "is not a known member");
+      add_error(*errors_, with_suggestion({"unknown_member", path_of(key), "is not a known member"},
+                                          suggest_member(key)));
     }
   }
 }

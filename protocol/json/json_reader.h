@@ -33,6 +33,7 @@ Result<Json> parse_json(std::string_view text, const JsonLimits& limits = {});
 inline constexpr std::size_t kMaxReadErrors = 256;
 
 /// Adds an error if `errors` contains fewer than kMaxReadErrors errors.
+void add_error(Errors& errors, Error error);
 void add_error(Errors& errors, std::string code, std::string path, std::string message);
 
 /// Returns the JSON pointer (RFC 6901) of a member or of an array element.
@@ -96,6 +97,7 @@ class ObjectReader {
  private:
   template <class Names>
   std::size_t choose(std::string_view key, const Names& names, std::optional<std::size_t> fallback);
+  std::string suggest_member(std::string_view key) const;
 
   const Json* value_;
   std::string path_;

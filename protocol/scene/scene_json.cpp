@@ -4,6 +4,7 @@
 
 #include "core/limits.h"
 #include "core/numerics/choose_numerics.h"
+#include "core/support/nearest_name.h"
 #include "core/validation/validate.h"
 #include "protocol/scene/part_names.h"
 #include "protocol/scene/scene_parts.h"
@@ -43,7 +44,8 @@ void find_missing_material(const PartialScene& partial, const std::string& mater
   const auto& known = partial.scene.materials;
   if (material.empty() || !can_be_checked(partial, material)) return;
   if (std::ranges::find(known, material, &Material::name) != known.end()) return;
-  add_error(errors, "unknown_name", path, "must be the name of one of the scene's materials");
+  add_error(errors, unknown_name(errors, path, "must be the name of one of the scene's materials",
+                                 material, known, &Material::name));
 }
 
 /// Calls `read(element, path, errors)` for each element of the list `key`, and then

@@ -1,10 +1,31 @@
 #include "server/cli/program.h"
 
 #include <CLI/CLI.hpp>
+#include <iostream>
+#include <string>
 
+#include "core/support/nearest_name.h"
 #include "server/cli/common/command.h"
 
 namespace vat {
+namespace {
+
+/// Returns the sub-command or option that the first unexpected argument can mean.
+std::string suggest(const CLI::App& app) {
+  const auto chosen = app.get_subcommands();
+  const CLI::App& command = chosen.empty() ? app : *chosen.front();
+  const std::string extra = app.remaining(true).front();
+  NearestName nearest(extra.substr(0, extra.find('=')));
+  if (chosen.empty()) {
+    for (const CLI::App* each : app.get_subcommands({})) nearest.consider(each->get_name());
+  }
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) nearest.consider("--" + name);
+  }
+  return nearest.suggestion();
+}
+
+}  // namespace
 
 int run_command(int argc, char** argv) {
   CLI::App app{"Particle simulation of interacting liquids, deformable and rigid bodies", "vat"};
@@ -26,6 +47,12 @@ int run_command(int argc, char** argv) {
   add_backup_commands(app, exit_code);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::ExtrasError& error) {
+    app.exit(error);
+    if (const std::string name = suggest(app); !name.empty()) {
+      std::cerr << "Did you mean " << name << "?\n";
+    }
+    return kExitUsage;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kExitOk : kExitUsage;
   }

@@ -17,7 +17,9 @@ bool is_id(const Json& value) {
 }
 
 Json error_to_json(const Error& error) {
-  return {{"code", error.code}, {"path", error.path}, {"message", error.message}};
+  Json json{{"code", error.code}, {"path", error.path}, {"message", error.message}};
+  if (!error.suggestion.empty()) json["suggestion"] = error.suggestion;
+  return json;
 }
 
 Json rpc_error_to_json(const RpcError& error) {
@@ -41,6 +43,13 @@ RpcError parse_failed(const Error& error) {
 
 RpcError invalid_request(std::string message) {
   return {ErrorKind::invalid_request, std::move(message)};
+}
+
+RpcError with_suggestion(RpcError error, const std::string& name) {
+  if (name.empty()) return error;
+  error.message += "; did you mean " + name + "?";
+  error.data["suggestion"] = name;
+  return error;
 }
 
 RpcError method_not_found(std::string_view method) {

@@ -30,6 +30,9 @@ struct RpcError {
 /// Returns an error for `error` of parse_json(). `data.reason` is the code of `error`.
 RpcError parse_failed(const Error& error);
 RpcError invalid_request(std::string message);
+/// Returns the error with `name` in `data.suggestion` and in the message. Returns the error
+/// unchanged if `name` is empty.
+RpcError with_suggestion(RpcError error, const std::string& name);
 RpcError method_not_found(std::string_view method);
 /// Returns an error with all elements of `errors`, which must not be empty. Paths are JSON pointers
 /// into `params`.

@@ -36,7 +36,7 @@ ActionResult start(SessionCore& core, Participant& participant, const BodyKey& k
   const std::size_t maximum = core.environment().limits.max_grabs_per_client;
   if (participant.grabs.size() >= maximum) return limit_reached("grabs_per_client", maximum);
   const std::optional<BodyView> found = find_body(core.run().simulation(), key);
-  if (!found) return no_body_with_key("/body");
+  if (!found) return no_body_with_key(core.run().simulation(), key, "/body");
   const BodyId body = found->id;
   if (auto error = refuse_held_body(core, participant, body)) return *std::move(error);
   const std::uint64_t grab = core.run().last_grab() + 1;

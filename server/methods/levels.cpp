@@ -10,6 +10,7 @@
 #include "core/validation/validate.h"
 #include "server/methods/handlers.h"
 #include "server/operations/scene_speed.h"
+#include "server/session/core/scene_loading.h"
 
 namespace vat {
 namespace {
@@ -61,7 +62,7 @@ Levels accepted_levels(const Scene& normal, const ServerLimits& limits) {
 /// Returns the levels of a scene, and the finest one that is faster than real time by the margin.
 RpcResult compute_levels(const ServerResources& resources, const std::string& name) {
   const Scene* const normal = resources.catalogue.find(name);
-  if (normal == nullptr) return no_such_scene(name);
+  if (normal == nullptr) return unknown_scene(name, resources.catalogue);
   const ServerLimits& limits = resources.settings.limits;
   const Levels accepted = accepted_levels(*normal, limits);
   if (accepted.levels.empty()) return limit_reached("particles", limits.max_particles);

@@ -1,8 +1,10 @@
 #include "server/methods/parts.h"
 
 #include <limits>
+#include <utility>
 
 #include "core/limits.h"
+#include "core/support/nearest_name.h"
 #include "server/session/core/scene_loading.h"
 
 namespace vat {
@@ -38,8 +40,14 @@ std::optional<BodyView> find_body(const Simulation& simulation, const BodyKey& k
   return id ? simulation.find_body(*id) : std::nullopt;
 }
 
-RpcError no_body_with_key(const std::string& path) {
-  return no_such_body("no body has this id or name", path);
+RpcError no_body_with_key(const Simulation& simulation, const BodyKey& key,
+                          const std::string& path) {
+  RpcError error = no_such_body("no body has this id or name", path);
+  const auto* name = std::get_if<std::string>(&key);
+  if (name == nullptr) return error;
+  NearestName nearest(*name);
+  nearest.consider_all(simulation.bodies(), &BodyView::name);
+  return with_suggestion(std::move(error), nearest.suggestion());
 }
 
 SessionId read_session_id(ObjectReader& params) {

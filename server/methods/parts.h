@@ -19,8 +19,9 @@ using BodyKey = std::variant<BodyId, std::string>;
 std::optional<BodyKey> to_body_key(const Json& value, const std::string& path, Errors& errors);
 /// Returns the body, or an empty optional if there is no such body.
 std::optional<BodyView> find_body(const Simulation& simulation, const BodyKey& key);
-/// Returns the error for a key without a body.
-RpcError no_body_with_key(const std::string& path);
+/// Returns the error for a key without a body, with a suggestion from the names of the bodies.
+RpcError no_body_with_key(const Simulation& simulation, const BodyKey& key,
+                          const std::string& path);
 
 /// Returns the parameter `session`. The session may not exist.
 SessionId read_session_id(ObjectReader& params);

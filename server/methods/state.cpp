@@ -33,7 +33,7 @@ RpcResult query(const Simulation& simulation, const std::optional<std::vector<Bo
   } else {
     for (std::size_t i = 0; i < keys->size(); ++i) {
       const auto body = find_body(simulation, (*keys)[i]);
-      if (!body) return no_body_with_key(pointer_to("/bodies", i));
+      if (!body) return no_body_with_key(simulation, (*keys)[i], pointer_to("/bodies", i));
       bodies.push_back(describe_state(*body));
     }
   }
@@ -81,7 +81,7 @@ SessionAction read_state_connections(ObjectReader& params, Errors& errors) {
     ConnectionQuery wish{{}, most};
     if (key) {
       const auto body = find_body(simulation, *key);
-      if (!body) return no_body_with_key("/body");
+      if (!body) return no_body_with_key(simulation, *key, "/body");
       wish.body = body->id;
     }
     const Result<Connections> found = simulation.connections(wish);

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/support/check.h"
+#include "core/support/nearest_name.h"
 #include "server/support/log.h"
 
 namespace vat {
@@ -16,6 +17,12 @@ RateClass class_of(const std::variant<RpcRequest, RpcError>& request) {
   const auto* good = std::get_if<RpcRequest>(&request);
   const Method* method = good == nullptr ? nullptr : find_method(good->method);
   return method == nullptr ? RateClass::query : method->row.rate_class;
+}
+
+RpcError unknown_method(std::string_view name) {
+  NearestName nearest(name);
+  for (const Method& method : all_methods()) nearest.consider(method.row.name);
+  return with_suggestion(method_not_found(name), nearest.suggestion());
 }
 
 }  // namespace
@@ -102,7 +109,7 @@ std::optional<RpcResult> Dispatcher::call(PendingReply& reply, Role role, RpcReq
   if (role == Role::none && (method == nullptr || method->row.least_role > Role::none)) {
     return not_authenticated("the first message must be access.enter");
   }
-  if (method == nullptr) return method_not_found(request.method);
+  if (method == nullptr) return unknown_method(request.method);
   const MethodRow& row = method->row;
   reply.set_method(row);
   if (row.rate_class != RateClass::scene && bytes > limits().max_message_bytes) {

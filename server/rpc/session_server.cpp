@@ -13,7 +13,8 @@ Errors to_errors(const RpcError& error) {
   Errors errors;
   if (const auto list = error.data.find("errors"); list != error.data.end()) {
     for (const Json& entry : *list) {
-      errors.push_back({entry.at("code"), entry.at("path"), entry.at("message")});
+      errors.push_back({entry.at("code"), entry.at("path"), entry.at("message"),
+                        entry.value("suggestion", std::string())});
     }
   }
   if (errors.empty()) {

@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <fstream>
-#include <numeric>
 #include <sstream>
 #include <string_view>
 #include <utility>
 
+#include "core/support/nearest_name.h"
 #include "protocol/json/printable.h"
 
 namespace vat {
@@ -14,24 +14,8 @@ namespace {
 
 constexpr std::string_view kPrefix = "VAT_";
 
-/// Levenshtein's distance: letters to insert, remove or replace.
-std::size_t distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), 0);
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({replaced, diagonal + 1, row[j] + 1});
-    }
-  }
-  return row.back();
-}
-
-const Setting& nearest(std::span<const Setting> settings, std::string_view name) {
-  return *std::ranges::min_element(
-      settings, {}, [name](const Setting& setting) { return distance(name, setting.name); });
+NearestName nearest_setting(std::span<const Setting> settings, std::string_view name) {
+  return NearestName(name).consider_all(settings, &Setting::name);
 }
 
 const Setting* find(std::span<const Setting> settings, std::string_view name) {
@@ -96,9 +80,9 @@ Status apply_file(std::span<const Setting> settings, const std::string& file,
     const std::string path = pointer_to("", printable(name));
     const Setting* setting = find(settings, name);
     if (setting == nullptr) {
-      add_error(errors, "unknown_member", path,
-                "is not a setting; the nearest is " + nearest(settings, name).name +
-                    ", and there are " + names_of(settings));
+      add_error(errors, with_suggestion({"unknown_member", path,
+                                         "is not a setting; there are " + names_of(settings)},
+                                        nearest_setting(settings, name).suggestion()));
     } else if (std::string fault = setting->find_fault(value); !fault.empty()) {
       add_error(errors, "bad_value", path, std::move(fault));
     } else {
@@ -132,8 +116,9 @@ std::vector<std::string> unknown_variables(std::span<const Setting> settings,
   for (const std::string& entry : environment) {
     const std::string_view variable = split(entry).first;
     if (!variable.starts_with(kPrefix) || find_by_variable(settings, variable) != nullptr) continue;
-    const Setting& near = nearest(settings, lower(variable.substr(kPrefix.size())));
-    unknown.push_back(printable(variable) + ", not " + variable_of(near) + "?");
+    const std::string nearest =
+        nearest_setting(settings, lower(variable.substr(kPrefix.size()))).nearest();
+    unknown.push_back(printable(variable) + ", not " + variable_of(*find(settings, nearest)) + "?");
   }
   return unknown;
 }

@@ -68,7 +68,7 @@ bool WsEndpoint::validate(WsStream& stream) {
   if (!refusal) {
     refusal = refuse_upgrade(
         {stream.get_request().get_uri(), stream.get_request_header("Host"),
-         stream.get_request_header("Origin"), stream.get_request_header("Sec-WebSocket-Version"),
+         stream.get_request_header("Origin"), stream.get_request().websocket_version,
          stream.get_requested_subprotocols()},
         shared_.settings.allowed_origins);
   }
@@ -79,6 +79,7 @@ bool WsEndpoint::validate(WsStream& stream) {
   set_status(stream, refusal->status);
   stream.append_header("Content-Type", kPlainText);
   stream.append_header("Connection", "close");
+  stream.replace_header("Sec-WebSocket-Version", kWebSocketVersion);  // RFC 6455, section 4.4
   stream.set_body(refusal->message);
   return false;
 }

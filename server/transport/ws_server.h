@@ -14,6 +14,7 @@
 #include "server/transport/transport.h"
 #include "server/transport/ws_message.h"
 #include "server/transport/ws_socket.h"
+#include "server/transport/ws_upgrade.h"
 
 namespace vat {
 
@@ -33,14 +34,21 @@ struct WsPeer {
   int unanswered_pings = 0;
 };
 
-/// HTTP request that counts the bytes received after its end.
+/// HTTP request that counts the bytes received after its end. The library handles every upgrade as
+/// RFC 6455, and refuse_upgrade() decides on the version that the client sent. Otherwise the library
+/// would answer requests of the drafts before the RFC with status 500.
 struct WsRequest : websocketpp::http::parser::request {
   std::size_t consume(const char* bytes, std::size_t size) {
     const std::size_t used = websocketpp::http::parser::request::consume(bytes, size);
     rest = size - used;
+    if (ready()) {
+      websocket_version = get_header("Sec-WebSocket-Version");
+      replace_header("Sec-WebSocket-Version", kWebSocketVersion);
+    }
     return used;
   }
   std::size_t rest = 0;
+  std::string websocket_version;  // empty if the client sent none
 };
 
 /// Configuration of websocketpp for one thread: no locks, log or compression.

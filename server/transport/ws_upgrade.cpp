@@ -25,7 +25,7 @@ std::optional<HttpRefusal> refuse_upgrade(const UpgradeRequest& request,
   if (request.target.substr(0, request.target.find('?')) != "/ws") {
     return HttpRefusal{400, "WebSocket connections are served at /ws only.\n"};
   }
-  if (request.version != "13") {
+  if (request.version != kWebSocketVersion) {
     return HttpRefusal{400, "Sec-WebSocket-Version must be 13.\n"};
   }
   const auto is_named = [&](const std::string& allowed) {

@@ -8,6 +8,7 @@
 namespace vat {
 
 inline constexpr const char* kSubprotocol = "vat.v1";
+inline constexpr const char* kWebSocketVersion = "13";  ///< RFC 6455
 
 /// Headers of a WebSocket upgrade. Missing headers are empty.
 struct UpgradeRequest {

@@ -42,7 +42,7 @@ std::vector<Real> steps_of(const std::vector<Solution>& solutions) {
   return steps;
 }
 
-TEST(BenchAccuracy, FrontHasWhatNothingBeats) {
+TEST(BenchAccuracy, FrontHasTheUnbeatenRuns) {
   const auto by_count = pareto_front(some_solutions(), evaluations_of);
   EXPECT_THAT(steps_of(by_count), testing::ElementsAre(0.5, 0.125));
   const auto by_time = pareto_front(some_solutions(), seconds_of);

@@ -56,7 +56,7 @@ TEST(BenchCompare, MalformedCsvIsRefused) {
 }
 
 // Both the median and the minimum exceed the tolerance, since a busy machine increases medians.
-TEST(BenchCompare, SlowerIsWhatMedianAndLeastSay) {
+TEST(BenchCompare, SlowerNeedsMedianAndMinimum) {
   const std::vector<TimedRow> before = {row("a", 1), row("b", 1), row("c", 1), row("d", 1)};
   const std::vector<TimedRow> after = {row("a", 1.2), row("b", 1.2, 0.9 / 1.2), row("c", 1.09),
                                        row("d", 0.8)};
@@ -94,7 +94,7 @@ TEST(BenchCompare, RowsAreMatchedByCaseThreadsAndInstructionSet) {
 }
 
 // Compares a result of the benchmark with a copy that the test made slower.
-TEST(BenchCompare, ExitCodeTellsWhatGotSlower) {
+TEST(BenchCompare, ExitCodeReportsSlowerCases) {
   const TemporaryFolder folder;
   const ProgramResult measured = run_bench({"speed", "--quick", "--threads", "1", "--output",
                                             folder.file("a"), "--case", "dam-break-1k-tait"});

@@ -23,7 +23,7 @@ using testing::HasSubstr;
 
 const fs::path kPage = fs::path(VAT_SOURCE_DIR) / "core/ACCURACY.md";
 
-TEST(BenchDocument, FillsWhatStandsBetweenMarkers) {
+TEST(BenchDocument, FillsTheTextBetweenMarkers) {
   const Result<std::string> filled = fill_markers(
       "# Page\n<!-- begin a -->\nold\n| x |\n<!-- end a -->\nWords.\n"
       "<!-- begin b -->\n<!-- end b -->\n",

@@ -51,7 +51,7 @@ TEST(BenchTable, JsonHasOneObjectARow) {
                                   {"name": "", "value": null, "count": 0, "good": false}])"));
 }
 
-TEST(BenchTable, FolderIsMadeAndNamedWhereItCannotBe) {
+TEST(BenchTable, FolderIsCreatedOrNamedInTheError) {
   const TemporaryFolder folder;
   ASSERT_TRUE(write_table(small_table(), folder.path() / "a" / "b", "t", "# Title"));
   EXPECT_THAT(read_file(folder.file("a/b/t.md")), testing::StartsWith("# Title\n\n| name"));
@@ -69,7 +69,7 @@ LogPlot small_plot() {
                      {.label = "line", .points = {{3, 4}}, .colour = 8, .dash = 1}}};
 }
 
-TEST(BenchPlot, DataLeavesOutWhatHasNoLogarithm) {
+TEST(BenchPlot, DataOmitsValuesWithoutLogarithm) {
   EXPECT_EQ(plot_data(small_plot()), "# front\n1 0.5\n\n\n# none\nNaN NaN\n\n\n# line\n3 4\n");
 }
 
@@ -141,7 +141,7 @@ TEST(BenchPlot, MissingGnuplotIsExplained) {
   EXPECT_THAT(found.errors()[0].message, HasSubstr("./vat packages bench installs it"));
 }
 
-TEST(BenchPlot, PictureIsDrawnWhereThereIsGnuplot) {
+TEST(BenchPlot, PictureIsDrawnIfGnuplotIsInstalled) {
   ASSERT_TRUE(find_gnuplot());
   const TemporaryFolder folder;
   const Status done = write_plot(small_plot(), folder.path(), "small");
@@ -168,13 +168,13 @@ int exit_code_of(const std::vector<validation::Case>& cases) {
   return validate(options, cases);
 }
 
-TEST(BenchValidate, ExitsWithOneWhereARowFails) {
+TEST(BenchValidate, ExitsWithOneIfARowFails) {
   EXPECT_EQ(exit_code_of({case_with("GOOD", 1.05)}), 0);
   EXPECT_EQ(exit_code_of({case_with("GOOD", 1.05), case_with("BAD", 1.2)}), 1);
   EXPECT_EQ(exit_code_of({case_with("NAN", kNan)}), 1);
 }
 
-TEST(BenchValidate, ExitsWithOneWhereACaseCannotMeasure) {
+TEST(BenchValidate, ExitsWithOneIfACaseCannotMeasure) {
   const validation::Case broken{"BROKEN", "", "none", {}, [](validation::Sheet&) {
                                   throw std::runtime_error("no such body");
                                 }};

@@ -22,7 +22,7 @@ std::string_view text_of(const std::vector<std::uint8_t>& bytes) {
 }
 
 // Compares with the decoder, because the load parses the header independently.
-TEST(BenchFanout, ReadsWhatTheHeaderSays) {
+TEST(BenchFanout, ReadsTheHeader) {
   GridFrame frame;
   frame.header.number = 77;
   frame.header.published = 1.7e9 + 0.25;
@@ -84,7 +84,7 @@ TEST(BenchSeeks, GoesToMomentsOfARecording) {
   EXPECT_EQ(table.number(0, "within") == 5, table.number(0, "longest [ms]") <= 200);
 }
 
-TEST(BenchSeeks, SaysWhatTheServerRefuses) {
+TEST(BenchSeeks, ReportsARefusalOfTheServer) {
   const TemporaryFolder folder;
   const ProgramResult result =
       run_bench({"seeks", "--scene", "gone", "--output", folder.path().string()});
@@ -159,7 +159,7 @@ TEST(BenchSoak, FindsTheGrowthOfALine) {
 }
 
 // Growth of more than a twentieth is a leak. The first rest does not count.
-TEST(BenchSoak, TellsLeaksFromSwings) {
+TEST(BenchSoak, DistinguishesLeaksFromSwings) {
   EXPECT_TRUE(bench::is_flat({10, 40, 41, 40, 41, 40}, 0.05));
   EXPECT_TRUE(bench::is_flat({10, 40, 40.4, 40.8, 41.2, 41.6}, 0.05)) << "growth below the limit";
   EXPECT_FALSE(bench::is_flat({10, 40, 40.6, 41.2, 41.8, 42.4}, 0.05));
@@ -167,7 +167,7 @@ TEST(BenchSoak, TellsLeaksFromSwings) {
 }
 
 // A short version of the ten-minute run in tests/bench/README.md.
-TEST(BenchSoak, ServerOutlivesClientsOfAllManners) {
+TEST(BenchSoak, ServerSurvivesAllKindsOfClients) {
   const TemporaryFolder folder;
   const ProgramResult result =
       run_bench({"soak", "--seconds", "15", "--output", folder.path().string()});

@@ -67,7 +67,7 @@ TEST_F(VatReplay, RepeatsRecordingsOfEarlierVersions) {
   EXPECT_GE(count, 1);
 }
 
-TEST_F(VatReplay, TellsTheTickAtWhichItDiffers) {
+TEST_F(VatReplay, ReportsTheFirstDifferentTick) {
   Recording recording = make_recording();
   recording.hashes[1].hash ^= 1;
   const ProgramResult result = run_vat({"replay", write(write_recording(recording))});
@@ -76,7 +76,7 @@ TEST_F(VatReplay, TellsTheTickAtWhichItDiffers) {
   EXPECT_THAT(result.err, HasSubstr("; the states are equal up to tick 5\n"));
 }
 
-TEST_F(VatReplay, VerifiesNothingWhereThereIsNothingToCompare) {
+TEST_F(VatReplay, VerifiesNothingWithoutHashes) {
   Recording recording = make_recording();
   recording.hashes.clear();
   const std::string file = write(write_recording(recording));
@@ -86,7 +86,7 @@ TEST_F(VatReplay, VerifiesNothingWhereThereIsNothingToCompare) {
   EXPECT_THAT(result.err, HasSubstr("there is no hash to compare with"));
 }
 
-TEST_F(VatReplay, RefusesWhatIsNoRecording) {
+TEST_F(VatReplay, RefusesOtherFiles) {
   std::vector<std::uint8_t> bytes = write_recording(make_recording());
   bytes.pop_back();
   const ProgramResult cut = run_vat({"replay", write(bytes)});

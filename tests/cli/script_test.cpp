@@ -139,7 +139,7 @@ class VatScriptTlsOfAnother : public VatScriptTls {
   VatScriptTlsOfAnother() : VatScriptTls("DNS:example.org,IP:192.0.2.1") {}
 };
 
-TEST_F(VatScriptTls, PlaysWhereTheCertificateIsTrusted) {
+TEST_F(VatScriptTls, PlaysIfTheCertificateIsTrusted) {
   EXPECT_TRUE(server_->is_secure());
   for (const char* host : {"wss://localhost", "wss://127.0.0.1"}) {
     const ProgramResult result = play(host, {"--ca", certificate_});
@@ -148,7 +148,7 @@ TEST_F(VatScriptTls, PlaysWhereTheCertificateIsTrusted) {
   }
 }
 
-TEST_F(VatScriptTls, ACertificateThatNobodyVouchesForIsRefused) {
+TEST_F(VatScriptTls, AnUntrustedCertificateIsRefused) {
   for (const std::vector<std::string>& options :
        {std::vector<std::string>{}, {"--ca", folder_.file("other.pem")}}) {
     const ProgramResult result = play("wss://localhost", options);
@@ -167,7 +167,7 @@ TEST_F(VatScriptTlsOfAnother, ACertificateForAnotherServerIsRefused) {
   EXPECT_THAT(address.err, HasSubstr("is not trusted: IP address mismatch"));
 }
 
-TEST_F(VatScriptTlsOfAnother, InsecureBelievesWhoeverAnswers) {
+TEST_F(VatScriptTlsOfAnother, InsecureAcceptsAnyServer) {
   const ProgramResult result = play("wss://localhost", {"--insecure"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
 }

@@ -70,7 +70,7 @@ TEST(ServeSettings, AVariableWithABadValueIsRefused) {
   EXPECT_THAT(result.err, HasSubstr("VAT_PORT: must be a whole number from 0 to 65535"));
 }
 
-TEST(ServeSettings, AVariableThatIsNoSettingIsTold) {
+TEST(ServeSettings, AVariableThatIsNoSettingIsReported) {
   const Variable port("VAT_PROT", "1");
   const ProgramResult result = run_vat({"serve", "--print-config"});
   EXPECT_EQ(result.exit_code, 0);

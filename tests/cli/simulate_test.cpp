@@ -98,7 +98,7 @@ TEST(Simulate, OutputsAtEveryMultipleAndTheEnd) {
   EXPECT_THAT(lines_of(result.err), ElementsAre(HasSubstr("0.1 s simulated in 100 steps")));
 }
 
-TEST(Simulate, TellsWhereItDepartsFromTheOptions) {
+TEST(Simulate, ReportsDeparturesFromTheOptions) {
   using Words = std::vector<std::string>;
   const std::pair<Words, const char*> cases[] = {
       {{"--until", "0.006", "--every", "0.0015"}, "the step is 0.00075 s instead of 0.001 s"},
@@ -216,7 +216,7 @@ TEST(Schedule, CountsTheOutputAtTheEndOnce) {
   EXPECT_EQ(make_schedule(0.1, 0.2, 0.5).output_count(), 4u);
 }
 
-TEST(Schedule, TickStaysWhereItIsAWholeNumberOfSteps) {
+TEST(Schedule, TickIsKeptIfItIsAWholeNumberOfSteps) {
   const Numerics scene{.step = 1e-3, .tick = 0.02};
   EXPECT_EQ(with_step(scene, 1e-3).tick, 0.02);
   EXPECT_EQ(with_step(scene, 2e-3).tick, 0.02);

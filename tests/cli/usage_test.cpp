@@ -47,6 +47,11 @@ std::vector<std::string> with_scene(std::vector<std::string> options) {
 INSTANTIATE_TEST_SUITE_P(
     Usage, WrongUsage,
     testing::Values(WrongUse{{}, "subcommand"}, WrongUse{{"conquer"}, "conquer"},
+                    WrongUse{{"simulat"}, "Did you mean simulate?"},
+                    WrongUse{with_scene({"--leval=fine"}), "Did you mean --level?"},
+                    WrongUse{with_scene({"--level", "corse"}), "did you mean \"coarse\"?"},
+                    WrongUse{with_scene({"--integrator", "heum"}), "did you mean \"heun\"?"},
+                    WrongUse{with_scene({"--isa", "avx"}), "did you mean \"avx2\"?"},
                     WrongUse{{"simulate"}, "scene"}, WrongUse{{"validate"}, "scene"},
                     WrongUse{with_scene({"--speed", "2"}), "--speed"},
                     WrongUse{with_scene({"--until", "-1"}), "--until"},

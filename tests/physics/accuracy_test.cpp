@@ -113,7 +113,7 @@ TEST(Accuracy, ThatNeedsTooManyStepsIsAnError) {
   EXPECT_EQ(result.errors().at(0).path, "/numerics/accuracy");
 }
 
-TEST(Accuracy, DoesNotChangeTheStepsOfARunThatGoesOn) {
+TEST(Accuracy, DoesNotChangeTheStepsOfARunInProgress) {
   Simulation simulation = make_simulation(make_accurate(make_swing({1.2, 0, 0}, 100), 1e-3));
   const Real step = simulation.step_size();
   BodyDescription stiff = make_swing({1.2, 0, 0}, 1e6).bodies[0];

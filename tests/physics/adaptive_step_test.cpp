@@ -86,7 +86,7 @@ TEST(AdaptiveStep, ReachesTheErrorOfFixedStepsAtAFractionOfTheCost) {
   }
 }
 
-TEST(AdaptiveStep, IsTheNominalOneWhereNothingAsksForLess) {
+TEST(AdaptiveStep, IsTheNominalOneWithoutALowerLimit) {
   const Scene scene = make_bounce(1e4, 0.02);
   Simulation fixed = make_simulation(scene);
   Simulation adaptive = make_simulation(make_adaptive(scene, 1e-3));

@@ -98,7 +98,7 @@ std::vector<MovingMass> moving_masses(const Simulation& simulation) {
 
 // With x' = x + dt v and v' = v + dt a, x' x v' - x x v = dt x x a + dt v x v'. The first terms
 // cancel in the sum over all bodies. The second terms are the error of explicit Euler.
-TEST(Conservation, ExplicitEulerGainsAngularMomentumAsTheorySays) {
+TEST(Conservation, ExplicitEulerGainsAngularMomentumAsPredicted) {
   for (const BodyKind kind : kKinds) {
     SCOPED_TRACE(to_string(kind));
     Simulation simulation =

@@ -154,7 +154,7 @@ TEST(WeaklyCompressible, ParticleLeavesEdgesAndCornersAsFastAsItCame) {
   }
 }
 
-TEST(Incompressible, GoesOnWithItsPressureWhereABodyIsAdded) {
+TEST(Incompressible, KeepsItsPressureIfABodyIsAdded) {
   Simulation simulation = make_simulation(make_column(12, 20, 0.025));
   simulation.advance(20);
   const BodyId water = simulation.bodies()[0].id;
@@ -214,7 +214,7 @@ class SolveWatch final : public StageObserver {
 
 // An implicit solve costs about a step. With increasing viscosity, steps become shorter down to
 // half. Beyond that, damping is solved implicitly.
-TEST(Incompressible, SolvesForViscosityWhereStepsWouldBeLessThanHalf) {
+TEST(Incompressible, SolvesForViscosityIfStepsWouldBeLessThanHalf) {
   Real thin = 0;
   Real shortest_unsolved = 1;
   Real shortest_solved = 1;
@@ -296,7 +296,7 @@ TEST(Incompressible, FlowsFromANozzleAndOutThroughADrain) {
 }
 
 // The report contains the iterations and residuals of the solves.
-TEST(Incompressible, TellsWhatItsSolvesTookAndLeft) {
+TEST(Incompressible, ReportsIterationsAndErrorsOfItsSolves) {
   Scene scene = make_column(12, 20, 0.025);
   scene.incompressible.divergence_tolerance = 1e-6;
   Simulation simulation = make_simulation(scene);

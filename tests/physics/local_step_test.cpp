@@ -138,7 +138,7 @@ Scene make_dumbbell_above_floor() {
 
 // The floor's steps are a hundredth of the spring's. If levels change, the kick at the start of a
 // step must belong to the level of the step.
-TEST(LocalStep, KeepsEnergyWhereLevelsChange) {
+TEST(LocalStep, KeepsEnergyAtChangesOfLevels) {
   Simulation simulation = make_simulation(make_dumbbell_above_floor());
   const Real before = energy_of(simulation);
   const AdvanceReport report = simulation.advance(300);

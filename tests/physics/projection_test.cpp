@@ -81,7 +81,7 @@ TEST(Projection, NeverGainsEnergyInACollision) {
   }
 }
 
-TEST(Projection, PutsApartWhatOverlapsAtTheStartWithoutThrowingIt) {
+TEST(Projection, SeparatesInitialOverlapsWithoutVelocity) {
   Scene scene = make_scene(IntegratorId::velocity_verlet, kFrame);
   scene.materials = {make_material("steel")};
   scene.default_interface = projection();
@@ -92,7 +92,7 @@ TEST(Projection, PutsApartWhatOverlapsAtTheStartWithoutThrowingIt) {
   EXPECT_LT(simulation.diagnostics().kinetic_energy, 1e-8);
 }
 
-TEST(Projection, CarriesWhatStandsOnAVatThatSlides) {
+TEST(Projection, CarriesBodiesOnASlidingVat) {
   Scene scene = make_floor_scene(kFrame);
   scene.default_interface = projection(0.8);
   scene.vat->motion = SlideMotion{{1, 0, 0}, 0.4, 2};  // at most 2 m/s^2

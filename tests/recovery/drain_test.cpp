@@ -27,7 +27,7 @@ class Drain : public testing::Test {
   const TemporaryFolder folder;
 };
 
-TEST_F(Drain, ClientsAreToldAndNobodyNewComesAndItEndsWhenTheLastHasGone) {
+TEST_F(Drain, NotifiesClientsRefusesNewOnesAndEndsAfterTheLast) {
   std::string hash;
   {
     script::ServerProcess server = start("3000");

@@ -23,7 +23,7 @@ Json fetch_readiness(std::uint16_t port) {
   return script::fetch_http(url, {}, "/readyz", steady_clock::now() + 30s);
 }
 
-TEST(Readiness, IsToldOnceAllSessionsAreBack) {
+TEST(Readiness, IsReportedAfterAllRecoveries) {
   TemporaryFolder folder;
   folder.write("pool.json", kPoolScene);
   const auto start = [&]() -> script::ServerProcess {

@@ -224,6 +224,7 @@ export interface ParameterError {
   code: string;
   path: Path;
   message: string;
+  suggestion?: string;
 }
 
 export interface ParseError {
@@ -251,6 +252,7 @@ export interface MethodNotFound {
   data: {
     kind: 'method_not_found';
     hint: Hint;
+    suggestion?: string;
   };
 }
 
@@ -300,6 +302,7 @@ export interface NoSuchBody {
     kind: 'no_such_body';
     hint: Hint;
     path: Path;
+    suggestion?: string;
   };
 }
 
@@ -310,6 +313,7 @@ export interface NoSuchScene {
     kind: 'no_such_scene';
     hint: Hint;
     path: Path;
+    suggestion?: string;
   };
 }
 

@@ -1,9 +1,13 @@
 #include "server/cli/common/option_checks.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "core/support/nearest_name.h"
 #include "server/output/text.h"
 
 namespace vat {
@@ -30,6 +34,18 @@ CLI::Validator csv_file_name() {
   return CLI::Validator(check, "FILE");
 }
 
+CLI::Validator one_of(std::vector<std::string> names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  const auto check = [names = std::move(names), list](const std::string& text) {
+    if (std::ranges::find(names, text) != names.end()) return std::string();
+    return unknown_name({}, "", "'" + text + "' is not one of " + list, text, names,
+                        std::identity())
+        .message;
+  };
+  return CLI::Validator(check, "{" + list + "}");
+}
+
 void add_isa_option(CLI::App& command, InstructionSet& instructions) {
   const auto check = [](const std::string& name) {
     const Result<InstructionSet> set = parse_instruction_set(name);
@@ -51,8 +67,7 @@ void add_level_option(CLI::App& command, Level& level) {
       .add_option_function<std::string>(
           "--level", keep,
           "Level of detail: the same physics with fewer or more particles; default: normal")
-      ->check(
-          CLI::IsMember(std::vector<std::string>(kNamesOf<Level>.begin(), kNamesOf<Level>.end())));
+      ->check(one_of({kNamesOf<Level>.begin(), kNamesOf<Level>.end()}));
 }
 
 void add_device_option(CLI::App& command, DeviceChoice& device) {

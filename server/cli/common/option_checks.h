@@ -1,6 +1,8 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
 
 #include "core/device/device_choice.h"
 #include "core/support/instruction_set.h"
@@ -13,6 +15,9 @@ CLI::Validator real_in(double min, double max);
 
 /// Returns a validator for file names that end in ".csv".
 CLI::Validator csv_file_name();
+
+/// Returns a validator for one of the names.
+CLI::Validator one_of(std::vector<std::string> names);
 
 /// Adds the option `--isa`: an instruction set of this machine. The default is the best instruction
 /// set.

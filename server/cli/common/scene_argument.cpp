@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <system_error>
 
+#include "core/support/nearest_name.h"
 #include "protocol/scene/scene_json.h"
 
 namespace vat {
@@ -29,7 +31,9 @@ Error unknown_scene(const std::string& name, const std::vector<std::string>& kno
   std::string message = "is not in the catalogue, which has";
   for (const std::string& other : known) message += ' ' + other;
   if (known.empty()) message += " no scenes";
-  return {"unknown_scene", name, message};
+  NearestName nearest(name);
+  nearest.consider_all(known, std::identity());
+  return with_suggestion({"unknown_scene", name, message}, nearest.suggestion());
 }
 
 Result<Scene> load_normal(const std::string& argument, const std::string& scenes_folder) {

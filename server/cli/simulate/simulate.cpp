@@ -55,6 +55,13 @@ in .part until the file is complete, also after a failed or interrupted run.
 
 Exit codes: 0 success, 1 invalid scene or failed run, 2 wrong usage, 128 + n interrupted by signal n.)";
 
+template <class Value>
+std::vector<std::string> names_in(const std::map<std::string, Value>& values) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : values) names.push_back(name);
+  return names;
+}
+
 std::map<std::string, IntegratorId> integrator_names() {
   std::map<std::string, IntegratorId> names;
   for (const IntegratorId id :
@@ -271,13 +278,13 @@ void add_simulate_options(CLI::App& command, SimulateOptions& options) {
       ->check(real_in(kMinStep, kMaxUntil));
   CLI::Option* const integrator =
       command.add_option("--integrator", options.integrator, "Default: the scene's")
-          ->check(CLI::IsMember(integrator_names()));
+          ->check(one_of(names_in(integrator_names())));
   CLI::Option* const step =
       command.add_option("--dt", options.step, "Step [s]; the longest step if steps vary")
           ->check(real_in(kMinStep, kMaxStep));
   CLI::Option* const control =
       command.add_option("--control", options.control, "Step control; default: the scene's")
-          ->check(CLI::IsMember(control_names()));
+          ->check(one_of(names_in(control_names())));
   command
       .add_option("--accuracy", options.accuracy,
                   "Error from which the three options above are chosen")

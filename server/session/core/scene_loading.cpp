@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/saved/greatest_size.h"
+#include "core/support/nearest_name.h"
 #include "server/operations/memory_limit.h"
 #include "server/storage/saved_scenes.h"
 
@@ -22,6 +23,12 @@ Result<std::string> refuse_mesh_file(const std::string&) {
                "a mesh in a message must contain vertices and triangles, not the name of a file"};
 }
 
+RpcError unknown_scene(std::string_view name, const Catalogue& catalogue) {
+  NearestName nearest(name);
+  nearest.consider_all(catalogue.entries(), &CatalogueEntry::name);
+  return with_suggestion(no_such_scene(name), nearest.suggestion());
+}
+
 std::variant<Scene, RpcError> read_client_scene(const Json& value, const Catalogue& catalogue,
                                                 Level level) {
   const bool is_named = value.is_string();
@@ -29,7 +36,7 @@ std::variant<Scene, RpcError> read_client_scene(const Json& value, const Catalog
   if (is_named) {
     const auto& name = value.get_ref<const std::string&>();
     named = catalogue.find(name);
-    if (named == nullptr) return no_such_scene(name);
+    if (named == nullptr) return unknown_scene(name, catalogue);
   }
   Result<Scene> scene = is_named ? Result<Scene>(*named) : read_scene(value, refuse_mesh_file);
   if (scene) scene = at_level(std::move(scene).value(), level);
@@ -45,7 +52,7 @@ Level read_level(ObjectReader& params) {
 std::variant<Json, RpcError> find_saved_scene(const std::string& name,
                                               const SessionEnvironment& environment) {
   const auto saved = environment.scenes == nullptr ? std::nullopt : environment.scenes->find(name);
-  if (!saved) return no_such_scene(name);
+  if (!saved) return unknown_scene(name, environment.catalogue);
   const std::string& text = saved->scene;
   Result<Json> json = parse_json(text, {text.size(), kMaxMessageDepth, text.size() + 1});
   if (!json) throw StorageError(StorageError::Kind::corrupt, "the saved scene " + name);

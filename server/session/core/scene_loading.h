@@ -20,6 +20,9 @@ inline constexpr std::string_view kLoadStateMethod = "session.load";
 /// Returns an error for every file, because scenes and bodies from clients contain their meshes.
 Result<std::string> refuse_mesh_file(const std::string& name);
 
+/// Returns an error no_such_scene, with a suggestion from the catalogue.
+RpcError unknown_scene(std::string_view name, const Catalogue& catalogue);
+
 /// Returns a scene, given by its catalogue name or as JSON, at a level of detail. Paths of errors
 /// begin with the parameter `scene`.
 std::variant<Scene, RpcError> read_client_scene(const Json& value, const Catalogue& catalogue,

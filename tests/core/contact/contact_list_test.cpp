@@ -177,7 +177,7 @@ Scene make_roll() {
   return scene;
 }
 
-TEST(ContactList, OfABodyWithItselfStaysHoweverTheBodyMovesAndTurns) {
+TEST(ContactList, OfABodyWithItselfIsKeptInRigidMotion) {
   Moved moved(make_roll());
   std::vector<Vec3>& positions = moved.probe.state().now.position;
   const std::vector<Vec3> start = positions;

@@ -138,7 +138,7 @@ TEST(DampingSolve, TakesEnergyAndKeepsMomenta) {
   }
 }
 
-TEST(DampingSolve, LeavesAHeldBodyWhereItIs) {
+TEST(DampingSolve, DoesNotMoveAHeldBody) {
   Scene scene = make_damped_contacts();
   scene.bodies[1].fixed = true;
   scene.bodies[1].velocity = scene.bodies[1].angular_velocity = Vec3::Zero();

@@ -91,7 +91,7 @@ TEST(AppliedForce, OverlappingForcesEachGiveTheirImpulse) {
   }
 }
 
-TEST(AppliedForce, EndsAlikeHoweverTheStepsAreAskedFor) {
+TEST(AppliedForce, EndsAtTheSameStepForAnyCalls) {
   for (const IntegratorId integrator : kIntegrators) {
     Simulation at_once = make_simulation(make_collision(integrator));
     Simulation one_by_one = make_simulation(make_collision(integrator));

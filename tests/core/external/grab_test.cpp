@@ -95,7 +95,7 @@ TEST(Grab, SharesItsForceAmongTheParticlesAround) {
   }
 }
 
-TEST(Grab, MovesAndLetsGo) {
+TEST(Grab, MovesAndReleases) {
   Simulation simulation = make_block_of(BodyKind::rigid, 1);
   ASSERT_TRUE(simulation.grab_start(kHand, simulation.bodies()[0].id, 0, {0.1, 0, 0}).ok());
   simulation.advance(2000);
@@ -111,7 +111,7 @@ TEST(Grab, MovesAndLetsGo) {
   EXPECT_EQ(velocity_of(simulation, 0), velocity);
 }
 
-TEST(Grab, TellsWhereItPullsAlsoOnceItCameBack) {
+TEST(Grab, ReportsItsTargetAfterARestore) {
   Simulation simulation = make_block_of(BodyKind::rigid, 1);
   EXPECT_EQ(simulation.grab_target(kHand), std::nullopt);
   ASSERT_TRUE(simulation.grab_start(kHand, simulation.bodies()[0].id, 0, {0.1, 0, 0}).ok());

@@ -68,7 +68,7 @@ Real moment_about(const BodyView& body, const Vec3& direction) {
 
 class GuidedBody : public testing::TestWithParam<IntegratorId> {};
 
-TEST_P(GuidedBody, IsDrivenAlongItsMotionWhateverItMeets) {
+TEST_P(GuidedBody, FollowsItsMotionThroughObstacles) {
   const Vec3 start{0.1, 0.2, 0.3};
   Scene scene = scene_of(GetParam(), {driven(start), plate("obstacle", {0.15, 0.2, 0.65})});
   scene.gravity = Vec3::Zero();
@@ -84,7 +84,7 @@ TEST_P(GuidedBody, IsDrivenAlongItsMotionWhateverItMeets) {
   EXPECT_GT(simulation.bodies()[1].pose->velocity.z(), 0) << "the obstacle is pushed";
 }
 
-TEST_P(GuidedBody, GoesOnFromTheStateOfItsBytes) {
+TEST_P(GuidedBody, ContinuesFromItsBytes) {
   Scene scene = scene_of(GetParam(), {driven({0, 0, 0}), wheel({0, 1, 0}, 0.01)});
   scene.bodies[1].position = {2, 0, 0};
   scene.bodies[1].angular_velocity = {0, 3, 0};

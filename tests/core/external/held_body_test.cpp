@@ -36,7 +36,7 @@ bool same_pose(const BodyView& a, const BodyView& b) {
 
 class HeldBody : public testing::TestWithParam<IntegratorId> {};
 
-TEST_P(HeldBody, AtRestStaysToTheBitAndStopsWhatFallsOnIt) {
+TEST_P(HeldBody, AtRestKeepsItsBitsAndStopsFallingBodies) {
   BodyDescription table = plate("table", {0, 0, 0});
   table.fixed = true;
   BodyDescription ball = plate("ball", {0, 0, 0.2});
@@ -117,7 +117,7 @@ TEST_P(HeldBody, StiffDampingAgainstOneDoesNotMoveIt) {
   EXPECT_TRUE(same_pose(simulation.bodies()[0], first.bodies()[0]));
 }
 
-TEST(HeldBodyState, ASnapshotBeforeTheReleaseGoesOnWithTheSameBits) {
+TEST(HeldBodyState, ASnapshotBeforeTheReleaseContinuesWithTheSameBits) {
   BodyDescription body = plate("body", {0, 0, 0});
   body.release = 0.05;
   Simulation simulation = test::make_simulation(scene_of(IntegratorId::velocity_verlet, {body}));

@@ -75,7 +75,7 @@ TEST(OuterForce, OfTwoBodiesInContactIsOpposite) {
   EXPECT_LT((of_a + of_b).norm(), 1e-10 * a.outer_force.norm());
 }
 
-TEST(OuterForce, OnAHeldBodyIsWhatHoldsItsLoad) {
+TEST(OuterForce, OnAHeldBodyCarriesItsLoad) {
   BodyDescription table = block("table", BodyKind::rigid, {0, 0, 0});
   table.fixed = true;
   Scene scene = scene_of({table, block("load", BodyKind::rigid, {0, 0, 0.19})});

@@ -80,7 +80,7 @@ Real rigid_energy(const Trial& trial, const Vec3& frame_velocity) {
 
 class HoldInside : public testing::TestWithParam<IntegratorId> {};
 
-TEST_P(HoldInside, AGrainStopsAtThePlaneAndKeepsWhatIsAlongIt) {
+TEST_P(HoldInside, AGrainStopsAtThePlaneAndKeepsItsTangentialVelocity) {
   for (int wall = 0; wall < kWallCount; ++wall) {
     Scene scene = make_soft_vat(GetParam());
     const Vec3 along(wall / 2 == 0 ? 0 : 0.3, wall / 2 == 1 ? 0 : -0.2, wall / 2 == 2 ? 0 : 0.1);
@@ -165,7 +165,7 @@ TEST(HoldInsideGrain, TakesTheSpeedOfAWallThatMoves) {
   }
 }
 
-TEST(HoldInsideGrain, AFixedOneStaysWhereItIs) {
+TEST(HoldInsideGrain, AFixedOneKeepsItsPlace) {
   Scene scene = make_soft_vat();
   scene.bodies = {make_grain({0, 0, 0}, {0, 0, 0})};
   std::get<ParticleShape>(scene.bodies[0].shape).fixed = {0};
@@ -175,7 +175,7 @@ TEST(HoldInsideGrain, AFixedOneStaysWhereItIs) {
   EXPECT_EQ(trial.now.position[0], Vec3(0, 0, -5));
 }
 
-TEST(HoldInsideGrain, NothingHoldsWhereTheWallsAreOff) {
+TEST(HoldInsideGrain, DisabledWallsDoNotHold) {
   Scene scene = make_soft_vat();
   scene.forces.walls = false;
   scene.bodies = {make_grain({0, 0, 0}, {0, 0, -20})};

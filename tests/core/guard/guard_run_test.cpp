@@ -39,7 +39,7 @@ Scene make_flight_and_crowd(IntegratorId integrator) {
   return scene;
 }
 
-TEST(GuardRun, GivesTheSameBitsHoweverTheStepsAreAskedFor) {
+TEST(GuardRun, GivesTheSameBitsForAnyCalls) {
   constexpr std::uint32_t kSteps = 80;
   for (const IntegratorId integrator : kIntegrators) {
     Simulation whole = make_simulation(make_flight_and_crowd(integrator));

@@ -70,7 +70,7 @@ TEST(Guard, NamesTheRigidBodyThatIsNotFinite) {
   expect([](RigidState& rigid) { rigid.orientation.w() = kNan; });
 }
 
-TEST(Guard, FindsWhatLeavesTheDomain) {
+TEST(Guard, FindsParticlesOutsideTheDomain) {
   using enum GuardEvent::Cause;
   expect_fault(fault_after([](Configuration& at) { at.position[8].x() = -1.1e6; }), outside_domain,
                1, 0);
@@ -114,7 +114,7 @@ TEST(Guard, TheDomainOfAVatIsTwiceItsLongestSideAroundIt) {
 }
 
 // Particles detect each other at 0.05 m, walls at 0.025 m.
-TEST(Guard, NothingMayPassInOneStepWhatItWouldNotNotice) {
+TEST(Guard, AParticleMayNotCrossAWallInOneStep) {
   using enum GuardEvent::Cause;
   Scene scene = make_three_kinds();
   const ForceProbe free(scene);
@@ -165,7 +165,7 @@ TEST(Guard, OnlyLiquidsOfOneMaterialDoNotNoticeOneAnother) {
   EXPECT_EQ(travel_of({{rigid, "a"}}), std::vector<Real>{kMaxLength});
 }
 
-TEST(Guard, ADeformableBodyNoticesItselfWhereItHasSelfContact) {
+TEST(Guard, ADeformableBodyWithSelfContactMeetsItself) {
   EXPECT_EQ(travel_of({{BodyKind::deformable, "a"}}), std::vector<Real>{0.05});
   EXPECT_EQ(travel_of({{BodyKind::deformable, "a"}}, false), std::vector<Real>{kMaxLength});
 }
@@ -255,7 +255,7 @@ TEST(Guard, RepeatsAStepInTwoFourAndEightParts) {
   }
 }
 
-TEST(Guard, KeepsTheLastGoodStateWhereHalvingIsNoHelp) {
+TEST(Guard, KeepsTheLastGoodStateIfHalvingFails) {
   Simulation simulation = make_simulation(make_oscillator(100));
   const std::uint64_t good = simulation.state_hash();
   const AdvanceReport report = simulation.advance(40);

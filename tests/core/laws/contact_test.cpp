@@ -57,7 +57,7 @@ TEST(Contact, IsADampedSpringOfTheOverlapThatNeverPulls) {
   EXPECT_NEAR(push_on_right(scene), kStiffness * 0.05, 1e-12);
 }
 
-TEST(Contact, StartsBelowAThresholdWhereOneIsGiven) {
+TEST(Contact, StartsBelowAGivenThreshold) {
   for (const Real threshold : {0.12, 0.3}) {
     Scene scene = make_pair_scene(threshold, 0);
     scene.interfaces = {{{"b", "a"}, {kStiffness, 0}, threshold}};

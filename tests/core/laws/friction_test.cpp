@@ -166,7 +166,7 @@ TEST(Friction, IsKeptForTheSolveAsADragAcrossTheContact) {
   EXPECT_LT((block.friction_dampers[0].normal - kNormal).norm(), 1e-12);
 }
 
-TEST(Friction, ActsWhereTheTwoTouch) {
+TEST(Friction, ActsAtTheContact) {
   const Vec3 way(0, 0, 0.3);
   const auto expect = [&](bool is_rigid, bool is_other_rigid, Real self, Real other) {
     const ContactArms arms = contact_arms(way, is_rigid, 0.2, is_other_rigid, 0.4);
@@ -207,7 +207,7 @@ Real slip_left(Real damping) {
 }
 
 // Explicit forces would be unstable at rate dt > 1. The solver then includes friction.
-TEST(Friction, IsStableWhereItMustBeSolvedFor) {
+TEST(Friction, IsStableIfItMustBeSolvedFor) {
   for (const Real damping : {0.0, 1.0, 100.0}) {
     EXPECT_LT(std::abs(slip_left(damping)), 1e-6) << damping;
   }

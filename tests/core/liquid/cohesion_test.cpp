@@ -50,7 +50,7 @@ TEST(CohesionKernel, MakesTheSurfaceTensionOfKirkwoodAndBuff) {
 }
 
 // Compares the attraction of a half space with the sum of its parts.
-TEST(CohesionKernel, OverAPlaneIsWhatAHalfSpacePullsWith) {
+TEST(CohesionKernel, OverAPlaneIsTheForceOfAHalfSpace) {
   for (const int dimensions : {2, 3}) {
     const CohesionKernel kernel(kSupport, kSpacing, dimensions);
     const Real fine = kernel.reach() / (dimensions == 3 ? 40 : 400);

@@ -128,7 +128,7 @@ TEST(Complementarity, TotalEffectIsThatOfTheChange) {
   }
 }
 
-TEST(Complementarity, TakesNoIterationWhereItIsSolved) {
+TEST(Complementarity, TakesNoIterationIfItIsSolved) {
   const Problem given(60, 1);
   Complementarity problem = given.start();
   given.solve(problem, kClose);
@@ -137,7 +137,7 @@ TEST(Complementarity, TakesNoIterationWhereItIsSolved) {
   EXPECT_EQ(problem.x, x);
 }
 
-TEST(Complementarity, EndsInBoundsWhereIterationsRunOut) {
+TEST(Complementarity, EndsInBoundsAtTheLimitOfIterations) {
   const Problem given(60, 2);
   for (int most = 2; most < 20; ++most) {
     Complementarity problem = given.start();

@@ -24,7 +24,7 @@ TEST(TaitPressure, IsLinearInTheVolumeBeyond) {
   }
 }
 
-TEST(TaitPressure, GoesOnAlongItsTangentFromTwiceTheDensity) {
+TEST(TaitPressure, ContinuesAlongItsTangentFromTwiceTheDensity) {
   for (const Real s : {2.0, 3.0, 10.0}) {
     EXPECT_NEAR(tait_pressure(s), tait_pressure(2) + 0.225 * (s - 2), 1e-15 * s) << s;
   }

@@ -99,7 +99,7 @@ TEST_P(Melts, AgainAfterARestore) {
   EXPECT_EQ(simulation.state_hash(), melted);
 }
 
-TEST_P(Melts, UnderUsersHandsWhichLetGo) {
+TEST_P(Melts, DuringGrabsWhichEnd) {
   Scene scene = make_melting_scene(GetParam());
   scene.bodies[1].melting = Melting{"water", 2 * kStep};
   Simulation simulation = make_simulation(scene);
@@ -133,7 +133,7 @@ TEST(Melting, InACallThatFailsIsUndone) {
   EXPECT_EQ(simulation.state_hash(), hash);
 }
 
-TEST(Melting, RefusesWhatCannotMelt) {
+TEST(Melting, RefusesBodiesThatCannotMelt) {
   Simulation simulation = make_simulation(make_melting_scene(PressureSolver::tait));
   const BodyId jelly = *simulation.find_body("jelly");
   const std::uint64_t hash = simulation.state_hash();

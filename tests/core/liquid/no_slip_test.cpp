@@ -144,7 +144,7 @@ TEST(NoSlip, MovesWithTheVat) {
   EXPECT_NEAR(probe.force(0).y(), 0, 1e-12);
 }
 
-TEST(NoSlip, CostsNothingWhereItDoesNothing) {
+TEST(NoSlip, CostsNothingWithoutEffect) {
   const auto has_stage = [](const Scene& scene) {
     const ForceProbe probe(scene);
     return !probe.work().of<LiquidScratch>().filled_density.empty();

@@ -122,7 +122,7 @@ TEST(PairClusters, HaveEveryPairOnce) {
 }
 
 // The search omits distant sources, so only few candidates are superfluous.
-TEST(PairClusters, LeaveOutWhatIsFar) {
+TEST(PairClusters, OmitDistantParticles) {
   const Cloud cloud(random_points(8000, 1, 5), {}, 0.1);
   const Real reach = 0.1;
   for (const InstructionSet set : available_instruction_sets()) {
@@ -149,7 +149,7 @@ TEST(PairClusters, LeaveOutWhatIsFar) {
   }
 }
 
-TEST(PairClusters, StopWhereThereIsTooMuchWork) {
+TEST(PairClusters, StopAtTheLimitOfWork) {
   const Cloud cloud(Points(3000, Vec3::Zero()), {}, 0.1);
   PairSearch how = cloud.how(0.1, best_instruction_set());
   how.most_work = 1'000'000;

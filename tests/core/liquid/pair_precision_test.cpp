@@ -58,7 +58,7 @@ TEST(PairPrecision, IsSingleOverAThousandSupports) {
   EXPECT_LT(relative_difference(900 * support), 1e-3);
 }
 
-TEST(PairPrecision, IsDoubleWhereParticlesAreFurtherApart) {
+TEST(PairPrecision, IsDoubleForDistantParticles) {
   const Real support = greatest_support(ForceProbe(make_spread_mixture({}, 1)));
   EXPECT_EQ(relative_difference(1100 * support), 0);
   EXPECT_EQ(relative_difference(1e5 * support), 0);

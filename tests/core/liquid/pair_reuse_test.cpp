@@ -29,7 +29,7 @@ void expect_forces_of_a_new_workspace(ForceProbe& probe, Real time) {
   EXPECT_EQ(probe.state().forces.particle, forces.particle);
 }
 
-TEST(PairReuse, FindsNothingAgainWhereNothingMoved) {
+TEST(PairReuse, SearchesNothingWithoutMotion) {
   ForceProbe probe(make_wet_vat());
   const std::uint64_t version = probe.work().of<LiquidScratch>().sources.version();
   ASSERT_GT(version, 0U);

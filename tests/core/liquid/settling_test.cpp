@@ -33,7 +33,7 @@ TEST(Settling, IsADragUntilItsTime) {
   EXPECT_EQ(simulation.bodies()[0].velocities[0], kept);
 }
 
-TEST(Settling, IsStableHoweverStrong) {
+TEST(Settling, IsStableAtAnyStrength) {
   Simulation simulation = make_simulation(make_lone_drop(1e-3, {1e6, 0.5}));
   EXPECT_TRUE(simulation.advance(10).events.empty());
   // Velocity Verlet with implicit damping at the end of the step is the trapezoidal rule.

@@ -72,7 +72,7 @@ TEST(ViscousImages, HaveTheVelocityTurnedRound) {
 }
 
 // A slip wall mirrors only the normal velocity.
-TEST(ViscousImages, OfSlipWallsResistWhatComesTowardsThem) {
+TEST(ViscousImages, OfSlipWallsResistApproachingLiquid) {
   for (int wall = 0; wall < 6; ++wall) {
     const int axis = wall / 2;
     Scene scene = make_wall_scene(wall, (axis + 1) % 3);
@@ -101,7 +101,7 @@ TEST(ViscousImages, MoveWithTheWallAndTheVat) {
   EXPECT_NEAR(probe.force(0).x(), others * 2 * (0.5 + 0.05 * std::numbers::pi), 1e-12 * others);
 }
 
-TEST(ViscousImages, CostNothingWhereTheyDoNothing) {
+TEST(ViscousImages, CostNothingWithoutEffect) {
   const auto has_stage = [](const Scene& scene) {
     return has_viscous_images(ForceProbe(scene).model());
   };

@@ -42,7 +42,7 @@ TEST(PeriodicBox, WrapsIntoTheBoxAndLeavesOtherAxesAlone) {
   }
 }
 
-TEST(PeriodicBox, WrapsWhatRoundingPutsOnTheFarSide) {
+TEST(PeriodicBox, WrapsPositionsRoundedToTheFarSide) {
   const PeriodicBox box(make_periodicity(Vec3::Zero(), Vec3::Ones(), {true, true, true}));
   EXPECT_EQ(box.wrap({-1e-20, -1e-300, 1}), Vec3(0, 0, 0));
 }
@@ -257,7 +257,7 @@ TEST(Periodic, SolidsThatCrossTheSeamCollideAsInTheOpen) {
   }
 }
 
-TEST(Periodic, LiquidComesInThroughTheOtherSide) {
+TEST(Periodic, LiquidEntersThroughTheOtherSide) {
   Scene scene = make_full_box(4, 2, 1);
   scene.bodies[0].velocity = {30, 0, -7};
   Simulation simulation = make_simulation(scene);

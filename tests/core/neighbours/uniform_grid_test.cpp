@@ -91,7 +91,7 @@ TEST(UniformGrid, EqualsBruteForceForFarPoints) {
   expect_equals_brute_force(points, 0.2, 3);
 }
 
-TEST(UniformGrid, SurvivesWhateverPositionsComeIn) {
+TEST(UniformGrid, AcceptsAnyPositions) {
   constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
   constexpr Real kNaN = std::numeric_limits<Real>::quiet_NaN();
   std::vector<Vec3> points = make_random_points(100, -1, 1, 10);
@@ -150,7 +150,7 @@ TEST(UniformGrid, CanBeBuiltAgainWithOtherPoints) {
 }
 
 // Memory depends on the number of points, not on the space between them.
-TEST(UniformGrid, GrowsItsCellsWherePointsAreSparse) {
+TEST(UniformGrid, HasLargerCellsForSparsePoints) {
   UniformGrid grid;
   const std::vector<Vec3> points = {Vec3::Constant(-1e6), Vec3::Constant(1e6)};
   grid.build(points, 1e-6);

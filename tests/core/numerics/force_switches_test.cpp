@@ -104,7 +104,7 @@ TEST(ForceSwitches, EnergyOfAForceThatIsOffIsZero) {
   EXPECT_EQ(without.contact_energy, 0);
 }
 
-TEST(ForceSwitches, StepLimitsSkipWhatIsOff) {
+TEST(ForceSwitches, StepLimitsOmitDisabledForces) {
   Scene scene = busy_scene();
   const auto limits_of = [](const Scene& at) {
     std::vector<SampledBody> samples;

@@ -40,7 +40,7 @@ TEST(Mesh, IsClosedWithoutAnyGap) {
   EXPECT_FALSE(is_closed(box));
 }
 
-TEST(Mesh, IsNotClosedWhereATriangleIsTurnedOver) {
+TEST(Mesh, IsNotClosedWithATurnedTriangle) {
   MeshShape box = box_mesh({0, 0, 0}, {1, 1, 1});
   std::swap(box.triangles[4][0], box.triangles[4][1]);
   EXPECT_FALSE(is_closed(box));
@@ -80,7 +80,7 @@ TEST(Mesh, IsFilledLikeTheSolidThatItBounds) {
 }
 
 // The lattice lines pass exactly through edges, diagonals and corners of these boxes.
-TEST(Mesh, IsFilledWhereLinesMeetEdgesAndCorners) {
+TEST(Mesh, IsFilledAtEdgesAndCorners) {
   const MeshShape mesh =
       joined(box_mesh({0, 0, 0}, {3, 3, 1}), box_mesh({0.5, 0.5, 1}, {1.5, 1.5, 3}));
   const std::vector<LatticePoint> points = fill(mesh, 1);

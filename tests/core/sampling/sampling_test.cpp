@@ -185,7 +185,7 @@ TEST(Sampling, TakesParticlesOneByOne) {
   EXPECT_EQ(sample.springs[1].stiffness, 60);
 }
 
-TEST(Sampling, GivesParticlesWithoutMassesWhatTheBodySays) {
+TEST(Sampling, GivesParticlesWithoutMassesTheBodysMass) {
   BodyDescription body;
   body.kind = BodyKind::rigid;
   body.shape = ParticleShape{{{0, 0, 0}, {1, 0, 0}}, {}, {}, {}, {}};

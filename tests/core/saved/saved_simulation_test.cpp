@@ -12,7 +12,7 @@ namespace {
 
 using namespace test;
 
-TEST(SavedSimulation, GoesOnWithEveryIntegrator) {
+TEST(SavedSimulation, ContinuesWithEveryIntegrator) {
   for (const IntegratorId integrator : kIntegrators) {
     SCOPED_TRACE(to_string(integrator));
     Simulation simulation = make_simulation(make_shaken_vat(integrator));
@@ -22,7 +22,7 @@ TEST(SavedSimulation, GoesOnWithEveryIntegrator) {
   }
 }
 
-TEST(SavedSimulation, GoesOnWithEveryControlOfSteps) {
+TEST(SavedSimulation, ContinuesWithEveryStepControl) {
   for (const StepControl control : {StepControl::adaptive, StepControl::local}) {
     SCOPED_TRACE(to_string(control));
     Scene scene = make_shaken_vat(IntegratorId::velocity_verlet, 2e-3);
@@ -34,7 +34,7 @@ TEST(SavedSimulation, GoesOnWithEveryControlOfSteps) {
   }
 }
 
-TEST(SavedSimulation, HoldsWhatUsersDo) {
+TEST(SavedSimulation, HasGrabsAndForcesOfUsers) {
   Simulation simulation = make_simulation(make_shaken_vat(IntegratorId::velocity_verlet));
   simulation.advance(30);
   const std::vector<BodyView> bodies = simulation.bodies();
@@ -68,7 +68,7 @@ TEST(SavedSimulation, HoldsBodiesThatCameAndWent) {
   EXPECT_EQ(loaded.value().add_body(make_newcomer(BodyKind::liquid, 0.7)).value(), second + 1);
 }
 
-TEST(SavedSimulation, GoesOnAfterTheGuardUndidSteps) {
+TEST(SavedSimulation, ContinuesAfterUndoneSteps) {
   Scene scene = make_two_material_scene(IntegratorId::velocity_verlet, 1e-3);
   scene.gravity = {1000, 0, 0};
   scene.bodies = {make_block("fast", BodyKind::liquid, "a", 1, {0, 0, 0}, {45, 0, 0}),
@@ -82,7 +82,7 @@ TEST(SavedSimulation, GoesOnAfterTheGuardUndidSteps) {
   EXPECT_GT(undone, 0U);
 }
 
-TEST(SavedSimulation, HoldsWhatSleeps) {
+TEST(SavedSimulation, HasSleepingBodies) {
   Simulation simulation = make_simulation(make_struck_stack());
   simulation.advance(60);  // contacts, and checks of bodies that may fall asleep
   expect_goes_on(simulation, 10);

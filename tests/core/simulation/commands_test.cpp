@@ -139,7 +139,7 @@ TEST(AddBody, RefusesBadBodies) {
   EXPECT_EQ(simulation.bodies().size(), 3U);
 }
 
-TEST(RemoveBody, LeavesTheOthersWhereTheyAre) {
+TEST(RemoveBody, DoesNotMoveOthers) {
   for (const char* name : {"pool", "jelly", "crate"}) {
     Simulation simulation = make_simulation(make_shaken_vat(IntegratorId::velocity_verlet));
     simulation.advance(20);
@@ -160,7 +160,7 @@ TEST(RemoveBody, LeavesTheOthersWhereTheyAre) {
   }
 }
 
-TEST(RemoveBody, EndsWhatActedOnItAndNeverUsesItsIdAgain) {
+TEST(RemoveBody, EndsItsInteractionsAndDoesNotReuseItsId) {
   Simulation simulation = make_simulation(make_shaken_vat(IntegratorId::velocity_verlet));
   const BodyId id = simulation.find_body("crate").value();  // the largest id so far
   ASSERT_TRUE(simulation.grab_start(1, id, 0, Vec3::Zero()).ok());

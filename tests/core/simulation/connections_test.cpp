@@ -82,7 +82,7 @@ TEST(Connections, HaveTheForceOfEachContact) {
 }
 
 // A column of cubes at rest. Each contact carries the weight above it.
-TEST(Connections, OfAStackCarryWhatIsAbove) {
+TEST(Connections, OfAStackCarryTheWeightAbove) {
   for (const InterfaceLaw law : {InterfaceLaw::penalty, InterfaceLaw::projection}) {
     SCOPED_TRACE(to_string(law));
     InterfaceConstants interface { 2e4, 50 };

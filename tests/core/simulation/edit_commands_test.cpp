@@ -43,7 +43,7 @@ TEST_F(MoveBody, ShiftsLiquidAndDeformableBodiesAsTheyAre) {
   }
 }
 
-TEST_F(MoveBody, TurnsRigidBodiesWhichGoOnTurningAsTheyDid) {
+TEST_F(MoveBody, TurnsRigidBodiesAndKeepsTheirAngularVelocity) {
   simulation.advance(50);
   const RigidPose before = *simulation.bodies()[2].pose;
   const Quat turned(Eigen::AngleAxis<Real>(1, Vec3::UnitX()));
@@ -86,7 +86,7 @@ TEST_F(MoveBody, TheShapeOfARigidBodyIsAroundItsParticles) {
 }
 
 // Moving a body at the start is equivalent to describing it there.
-TEST_F(MoveBody, MovesWhereItsDescriptionBegins) {
+TEST_F(MoveBody, MovesTheOriginOfItsDescription) {
   const Quat turned(Eigen::AngleAxis<Real>(-0.5, Vec3::UnitZ()));
   ASSERT_TRUE(simulation.move_body(id(2), {{0.31, 0.35, 0.8}, turned, {}}).ok());
   ASSERT_TRUE(
@@ -105,7 +105,7 @@ TEST_F(MoveBody, MovesWhereItsDescriptionBegins) {
   }
 }
 
-TEST_F(MoveBody, GoesOnFromItsBytesWithTheSameBits) {
+TEST_F(MoveBody, ContinuesFromItsBytesWithTheSameBits) {
   simulation.advance(60);
   ASSERT_TRUE(simulation.move_body(id(1), {{0.6, 0.6, 0.6}, {}, Vec3(0.1, 0, 0)}).ok());
   expect_goes_on(simulation, 30);
@@ -115,13 +115,13 @@ TEST_F(MoveBody, GoesOnFromItsBytesWithTheSameBits) {
   expect_goes_on(simulation, 100);
 }
 
-TEST_F(MoveBody, KeepsWhatIsHeld) {
+TEST_F(MoveBody, KeepsHeldParticles) {
   ASSERT_TRUE(simulation.grab_start(3, id(1), 0, {0.5, 0.5, 0.5}).ok());
   ASSERT_TRUE(simulation.move_body(id(1), {{0.6, 0.6, 0.6}, {}, {}}).ok());
   EXPECT_TRUE(simulation.grab_move(3, {0.4, 0.5, 0.5}).ok());
 }
 
-TEST_F(MoveBody, RefusesWhatCannotBeAndChangesNothing) {
+TEST_F(MoveBody, RefusesImpossibleMotionsAndChangesNothing) {
   const std::uint64_t hash = simulation.state_hash();
   const auto error = [&](BodyId body, const BodyPlacement& place) {
     return errors_of(simulation.move_body(body, place));
@@ -202,7 +202,7 @@ TEST_F(SetMaterial, SpringsGetTheirConstants) {
   EXPECT_EQ(simulation.scene().materials[1].springs->shear->stiffness, 600);
 }
 
-TEST_F(SetMaterial, WhatSpringsHaveFlownStays) {
+TEST_F(SetMaterial, PlasticStrainIsKept) {
   Material plastic = material("jelly");
   plastic.plasticity = Plasticity{1e-4, 0.1, 0, 0.5};
   ASSERT_TRUE(simulation.set_material(plastic).ok());
@@ -251,7 +251,7 @@ TEST_F(SetMaterial, AnAppearanceLeavesTheStateUnchanged) {
   EXPECT_EQ(error(painted), "out_of_range /material/appearance/opacity");
 }
 
-TEST_F(SetMaterial, GoesOnFromItsBytesWithTheSameBits) {
+TEST_F(SetMaterial, ContinuesFromItsBytesWithTheSameBits) {
   simulation.advance(60);
   Material water = material("water");
   water.liquid->viscosity = 3;
@@ -282,7 +282,7 @@ TEST_F(SetMaterial, MassesThatWereGivenStay) {
   expect_goes_on(simulation, 20);
 }
 
-TEST_F(SetMaterial, RefusesWhatIsWrongByItsPlace) {
+TEST_F(SetMaterial, RefusalsNameThePath) {
   const std::uint64_t hash = simulation.state_hash();
   Material changed = material("water");
   changed.density = -1;

@@ -100,7 +100,7 @@ TEST_P(Flows, InLayersASpacingApart) {
 INSTANTIATE_TEST_SUITE_P(Integrators, Flows, testing::ValuesIn(kIntegrators),
                          [](const auto& each) { return to_string(each.param); });
 
-TEST(Flow, InTheTubeIsSteadyWhateverPushes) {
+TEST(Flow, InTheTubeIsSteadyForEachDrive) {
   Scene scene = make_flow_scene();
   // A block of liquid in front of the opening.
   scene.bodies[0].shape = BoxShape{{0.4, 0.5, 0.5}, {0.3, 0.5, 0.5}};
@@ -122,7 +122,7 @@ TEST(Flow, BeginsAndEndsOnTime) {
   EXPECT_EQ(count_steady(simulation), 0U);
 }
 
-TEST(Flow, StopsAndGoesOnByCommand) {
+TEST(Flow, StopsAndContinuesByCommand) {
   Scene scene = make_flow_scene();
   scene.emitters[0].open = false;
   Simulation simulation = make_simulation(scene);
@@ -141,7 +141,7 @@ TEST(Flow, StopsAndGoesOnByCommand) {
   EXPECT_EQ(count_steady(simulation), 0U);  // the tube is empty
 }
 
-TEST(Flow, StopsWhereTheBodyIsFullAndGoesOnWhenThereIsRoom) {
+TEST(Flow, StopsAtAFullBodyAndContinuesWithRoom) {
   Scene scene = make_flow_scene();
   scene.emitters[0].most_particles = kStart + 50;
   Simulation simulation = make_simulation(scene);
@@ -207,7 +207,7 @@ TEST(Flow, DrainsAWholeBody) {
   EXPECT_GT(pool_size(simulation), 0U);
 }
 
-TEST(Flow, LeavesAStableOrderOfWhatStays) {
+TEST(Flow, KeepsTheOrderOfRemainingParticles) {
   Scene scene = make_flow_scene();
   scene.emitters.clear();
   scene.bodies.resize(1);
@@ -225,7 +225,7 @@ TEST(Flow, LeavesAStableOrderOfWhatStays) {
   }
 }
 
-TEST(Flow, EndsGrabsOfWhatIsDrainedAlone) {
+TEST(Flow, EndsOnlyGrabsOfDrainedParticles) {
   Scene scene = make_flow_scene();
   scene.emitters.clear();
   scene.bodies[0].shape = BoxShape{{0.5, 0.5, 0.2}, {0.2, 0.2, 0.2}};
@@ -288,7 +288,7 @@ TEST(Flow, GoesWithItsBody) {
   EXPECT_EQ(simulation.particle_count(), 27U);
 }
 
-TEST(Flow, OfOtherBodiesGoesOnWhenOneIsRemoved) {
+TEST(Flow, OfOtherBodiesContinuesAfterARemoval) {
   Scene scene = make_flow_scene();
   BodyDescription other = scene.bodies[0];
   other.name = "other";

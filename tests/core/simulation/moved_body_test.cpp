@@ -108,7 +108,7 @@ TEST(MovedBody, IsCompiledWithAllThatDeformableBodiesHave) {
   }
 }
 
-TEST(MovedBody, GoesOnFromItsBytesWithAllThatDeformableBodiesHave) {
+TEST(MovedBody, ADeformableOneContinuesFromItsBytes) {
   Simulation simulation = make_simulation(scene_of_cubes(StepControl::adaptive));
   simulation.advance(5);
   ASSERT_TRUE(simulation.move_body(simulation.bodies()[1].id, {{0.6, 0.7, 0.5}, {}, {}}).ok());

@@ -86,7 +86,7 @@ TEST(SetNumerics, KeepTheImpulseOfAForceThatActs) {
   EXPECT_NEAR(simulation.bodies()[0].pose->velocity.x(), 3 * 0.027 / 2, 1e-14);
 }
 
-TEST(SetNumerics, LetGoOfABodyWhenItsTimeComes) {
+TEST(SetNumerics, ReleaseABodyAtItsTime) {
   Scene scene = ball_scene(1e-3);
   scene.gravity = {0, 0, -10};
   scene.bodies[0].release = 0.1;
@@ -99,7 +99,7 @@ TEST(SetNumerics, LetGoOfABodyWhenItsTimeComes) {
   EXPECT_NEAR(simulation.bodies()[0].pose->center_of_mass.z(), -0.05, 1e-12);
 }
 
-TEST(SetNumerics, HoldWhatIsHeldAsOfOneThatIsGrabbedThen) {
+TEST(SetNumerics, KeepHeldBodiesAsNewlyGrabbedOnes) {
   for (const std::size_t body : {0, 1, 2}) {
     Simulation before = make_simulation(ticked_scene());
     Simulation after = make_simulation(ticked_scene());

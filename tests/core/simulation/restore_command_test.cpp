@@ -57,7 +57,7 @@ TEST_F(RestoredBody, IsBentAndMovesAsItDid) {
 }
 
 // The last body returns to its index, so the run is unchanged.
-TEST_F(RestoredBody, GoesOnAsItWouldHave) {
+TEST_F(RestoredBody, ContinuesAsWithoutTheRemoval) {
   simulation.advance(150);
   const Snapshot before = simulation.snapshot();
   // A new body makes the forces of the last step invalid, and so does this command.
@@ -76,7 +76,7 @@ TEST_F(RestoredBody, GoesOnAsItWouldHave) {
   for (std::size_t i = 0; i < now.size(); ++i) EXPECT_LT((now[i] - others[i]).norm(), 1e-10);
 }
 
-TEST_F(RestoredBody, ParticlesOfARigidOneAreWhereTheyWere) {
+TEST_F(RestoredBody, ParticlesOfARigidOneAreAtTheirPlaces) {
   simulation.advance(150);
   const auto places = copy_of(body(2).positions);
   const auto velocities = copy_of(body(2).velocities);
@@ -88,7 +88,7 @@ TEST_F(RestoredBody, ParticlesOfARigidOneAreWhereTheyWere) {
   }
 }
 
-TEST_F(RestoredBody, MayHaveBegunWhereTheVatIsNoMore) {
+TEST_F(RestoredBody, MayHaveBegunOutsideTheMovedVat) {
   ASSERT_TRUE(simulation.move_vat({1, 0, 0}).ok());
   simulation.advance(3000);
   ASSERT_GT(simulation.vat_offset().x(), 0.999);
@@ -99,7 +99,7 @@ TEST_F(RestoredBody, MayHaveBegunWhereTheVatIsNoMore) {
   }
 }
 
-TEST_F(RestoredBody, IsRefusedByWhatIsWrongAndChangesNothing) {
+TEST_F(RestoredBody, IsRefusedWithInvalidValuesAndChangesNothing) {
   const auto [pool, flowing] = take(0);
   const auto [cube, bent] = take(0);
   const auto [crate, turning] = take(0);

@@ -38,7 +38,7 @@ const std::map<std::string, Command> kChanges = {
     {"stronger force", apply_force("crate", {2, 0, 0}, 0.01)},
     {"force on another body", apply_force("jelly", {1, 0, 0}, 0.01)}};
 
-TEST(StateHash, SeesWhatEveryCommandSets) {
+TEST(StateHash, DependsOnTheEffectOfEachCommand) {
   for (const IntegratorId integrator : kIntegrators) {
     std::map<std::uint64_t, std::string> seen;
     seen[make_run(integrator).state_hash()] = "nothing";

@@ -69,7 +69,7 @@ TEST(HandMotion, IsSmoothWithinItsBoundsAndEndsAtTheTarget) {
   }
 }
 
-TEST(HandMotion, GoesOnSmoothlyWhereTheTargetChanges) {
+TEST(HandMotion, IsSmoothAtAChangeOfTheTarget) {
   const HandMotion first = to(2);
   const VatMotion then = hand_motion(first, 0.3);
   const HandMotion second = to(-1, then.offset.x(), then.velocity.x(), 0.3);
@@ -132,7 +132,7 @@ TEST_P(VatByHand, AtFullSpeedIsAsOneAtRest) {
   EXPECT_LT((seen.velocity - speed - at_rest.velocity).norm(), 10 * tolerance);
 }
 
-TEST_P(VatByHand, TakesWhatIsInItAlong) {
+TEST_P(VatByHand, CarriesItsContent) {
   Simulation simulation = test::make_simulation(scene());
   ASSERT_TRUE(simulation.move_vat({-1.9, 0, 0}).ok());
   test::advance_to(simulation, 3);
@@ -155,7 +155,7 @@ Scene plain() {
   return ball_in_vat(IntegratorId::velocity_verlet, StepControl::fixed);
 }
 
-TEST(MovedVat, GoesOnFromItsBytesWithTheSameBits) {
+TEST(MovedVat, ContinuesFromItsBytesWithTheSameBits) {
   Simulation simulation = test::make_simulation(plain());
   Simulation unmoved = test::make_simulation(plain());
   unmoved.advance(1000);
@@ -203,7 +203,7 @@ TEST(MovedVat, AddsToItsOwnMotion) {
   EXPECT_LT((simulation.vat_offset() - Vec3(0.3, 0.3, 0)).norm(), 1e-12);
 }
 
-TEST(MovedVat, WakesWhatSleeps) {
+TEST(MovedVat, WakesSleepingBodies) {
   Scene scene = plain();
   scene.sleeping = Sleeping{0.05, 0.1};
   Simulation simulation = test::make_simulation(scene);
@@ -217,7 +217,7 @@ TEST(MovedVat, WakesWhatSleeps) {
   EXPECT_EQ(simulation.sleeping_body_count(), 1U);
 }
 
-TEST(MovedVat, IsRefusedWhereItCannotBe) {
+TEST(MovedVat, IsRefusedAtImpossiblePlaces) {
   const auto error = [](const Scene& scene, const Vec3& offset) {
     Simulation simulation = test::make_simulation(scene);
     const std::uint64_t hash = simulation.state_hash();

@@ -106,7 +106,7 @@ TEST(SleepState, ASnapshotFromBeforeTheSleepWakes) {
   EXPECT_EQ(position_of(simulation, 1), marble);
 }
 
-TEST(SleepState, AFailedCallLeavesTheSleepersAsTheyWere) {
+TEST(SleepState, AFailedCallDoesNotChangeTheSleepers) {
   Scene scene = make_struck_stack();
   scene.bodies.push_back(make_marble("rocket", {10, 0, 1}));
   Simulation simulation = make_simulation(scene);
@@ -155,7 +155,7 @@ TEST(SleepState, ViewsAndDiagnosticsAreOfAllBodies) {
   EXPECT_NEAR(of_a.gravitational_energy, of_b.gravitational_energy, weight * bound);
 }
 
-TEST(SleepState, NoAllocationInAStepBesideSleepersOrWhereAllSleep) {
+TEST(SleepState, NoAllocationInAStepWithSleepers) {
   for (const bool has_marble : {true, false}) {
     Scene scene = make_resting_scene();
     scene.default_interface.restitution = 1;  // the marble bounces forever

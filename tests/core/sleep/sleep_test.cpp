@@ -12,7 +12,7 @@ using namespace test;
 /// Islands are searched in every eighth check. A tick has one check.
 constexpr int kTicksToSleep = 9;
 
-TEST(Sleep, NothingSleepsWhereTheSceneDoesNotSaySo) {
+TEST(Sleep, NothingSleepsIfTheSceneDisablesIt) {
   Scene scene = make_resting_scene();
   scene.bodies = {make_crate("crate", 0.0)};
   scene.sleeping.reset();
@@ -39,7 +39,7 @@ TEST(Sleep, ABodyAtRestSleepsAfterItsTime) {
   EXPECT_EQ(simulation.diagnostics().sleeping_bodies, 1U);
 }
 
-TEST(Sleep, WhatSleepsStaysWhereItIsAndTakesNoStep) {
+TEST(Sleep, SleepersKeepTheirPlacesAndTakeNoSteps) {
   Scene scene = make_resting_scene();
   scene.bodies = {make_crate("crate", 0.0), make_crate("other", 5.0)};
   Simulation simulation = make_simulation(scene);
@@ -75,7 +75,7 @@ TEST(Sleep, LosesNoMoreThanTheEnergyOfItsSpeed) {
   EXPECT_EQ(simulation.bodies()[0].pose->velocity, Vec3(Vec3::Zero()));
 }
 
-TEST(Sleep, NotWhatIsFasterOrTurnsFaster) {
+TEST(Sleep, NotAboveTheSpeedLimits) {
   Scene scene = make_resting_scene();
   scene.gravity.setZero();
   scene.bodies = {make_crate("moves", {0, 0, 3}), make_crate("turns", {5, 0, 3})};
@@ -89,7 +89,7 @@ TEST(Sleep, NotWhatIsFasterOrTurnsFaster) {
 }
 
 // A body that turns back at the top of its flight is slow for a moment.
-TEST(Sleep, NotWhatTurnsBackAtTheTop) {
+TEST(Sleep, NotAtATurningPoint) {
   Scene scene = make_resting_scene();
   scene.bodies = {make_crate("crate", {0, 0, 3})};
   Simulation simulation = make_simulation(scene);
@@ -98,7 +98,7 @@ TEST(Sleep, NotWhatTurnsBackAtTheTop) {
 }
 
 // A body that oscillates is slow in every fourth check, at its turning points.
-TEST(Sleep, NotWhatSwings) {
+TEST(Sleep, NotWhileSwinging) {
   Scene scene = make_resting_scene();
   scene.gravity.setZero();
   scene.vat.reset();
@@ -130,7 +130,7 @@ TEST(Sleep, AStackSleepsAsOne) {
 }
 
 /// A body at rest that touches a body which a user moves back and forth.
-TEST(Sleep, NotWhatTouchesWhatMoves) {
+TEST(Sleep, NotBesideMovingBodies) {
   Scene scene = make_resting_scene();
   scene.bodies = {make_crate("still", 0.0), make_marble("moving", {0, 0, 0.35}),
                   make_crate("far", 5.0)};
@@ -146,7 +146,7 @@ TEST(Sleep, NotWhatTouchesWhatMoves) {
   EXPECT_TRUE(is_asleep(simulation, "far"));
 }
 
-TEST(Sleep, NotWhatAUserHoldsOrPushes) {
+TEST(Sleep, NotWhileAUserHoldsOrPushes) {
   Scene scene = make_resting_scene();
   scene.bodies = {make_crate("held", 0.0), make_crate("pushed", 5.0)};
   Simulation simulation = make_simulation(scene);
@@ -184,7 +184,7 @@ TEST(Sleep, AnObstacleJoinsNothing) {
   EXPECT_GT(position_of(simulation, 2).z(), 1 + kRestRadius);
 }
 
-TEST(Sleep, NotWhatWaitsForItsRelease) {
+TEST(Sleep, NotBeforeARelease) {
   Scene scene = make_resting_scene();
   scene.bodies = {make_crate("held", {0, 0, 2})};
   scene.bodies[0].release = 1;
@@ -199,7 +199,7 @@ TEST(Sleep, NotWhatWaitsForItsRelease) {
   EXPECT_NEAR(position_of(simulation, 0, 13).z(), 2 - fall, 9.81 * 0.2 * scene.numerics.step);
 }
 
-TEST(Sleep, NotWhatIsToMelt) {
+TEST(Sleep, NotBeforeMelting) {
   Scene scene = make_resting_scene();
   scene.materials.push_back(make_liquid("water", 1000, {100, 1, 0.2}));
   scene.default_interface = {1000, 10};
@@ -273,7 +273,7 @@ TEST(Sleep, ALookChangesNothing) {
   }
 }
 
-TEST(Sleep, WhatIsFarFromTheSleepersDoesNotNoticeThem) {
+TEST(Sleep, DistantBodiesAreNotAffectedBySleepers) {
   Scene scene = make_resting_scene();
   scene.default_interface = {5000, 3, 0.3};  // forces that are kept between steps
   scene.numerics.step = 1e-3;

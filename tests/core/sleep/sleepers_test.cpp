@@ -130,7 +130,7 @@ TEST(Sleepers, PartAndRestMakeTheWhole) {
   }
 }
 
-TEST(Islands, AreBodiesNearEachOtherAndWhatIsAwakeKeepsThemAwake) {
+TEST(Islands, AreNearbyBodiesAndAnAwakeBodyKeepsThemAwake) {
   Scene scene = make_resting_scene();
   // Particles detect each other at 0.1 m. Islands are at least 0.25 m apart.
   scene.bodies = {make_crate("a", 0.0), make_crate("b", 0.2 + 0.249), make_crate("c", 5.0),
@@ -146,7 +146,7 @@ TEST(Islands, AreBodiesNearEachOtherAndWhatIsAwakeKeepsThemAwake) {
             (std::vector<Index>{kAwake, kAwake, kAwake, kAwake, 4}));
 }
 
-TEST(Sleepers, ForcesGoOnToo) {
+TEST(Sleepers, KeepTheirForces) {
   const auto whole = compile_scene(make_all_kinds());
   const auto awake = compile_awake(*whole, {kAwake, 0, 0, 0, kAwake, kAwake});
   Forces forces = initial_state(*whole).forces;

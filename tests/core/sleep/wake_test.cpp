@@ -27,7 +27,7 @@ Scene make_two_crates() {
   return scene;
 }
 
-TEST(Wake, NothingTouchesWhatSleeps) {
+TEST(Wake, NoContactLeavesSleepers) {
   for (const bool is_local : {false, true}) {
     Scene scene = make_resting_scene();
     if (is_local) {
@@ -107,7 +107,7 @@ TEST(Wake, AcrossTheSeamOfAPeriodicWorld) {
   EXPECT_LT(velocity_of(simulation, 0).x(), 0);
 }
 
-TEST(Wake, ByWhatFallsIntoALiquid) {
+TEST(Wake, ByABodyThatFallsIntoALiquid) {
   for (const PressureSolver solver : {PressureSolver::tait, PressureSolver::incompressible}) {
     Simulation simulation = make_simulation(make_resting_pool(solver));
     bool slept = false;

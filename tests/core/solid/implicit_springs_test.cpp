@@ -88,7 +88,7 @@ TEST(ImplicitSprings, LoseEnergyByDashpotsUntilTheBodyTurnsAsOne) {
   }
 }
 
-TEST(ImplicitSprings, CalmAtOnceWhatIsNotResolved) {
+TEST(ImplicitSprings, DampUnresolvedOscillationsAtOnce) {
   Simulation simulation = test::make_simulation(make_oscillator({1e8, 100}, 0.01, 0.01));
   simulation.advance(
       20);  // omega dt = 100, rate dt = 1: an undamped rounding error would oscillate
@@ -233,7 +233,7 @@ TEST(ImplicitSprings, NeedNoMorePassesForALongRope) {
 
 // In one step the rope falls much farther than its springs can stretch, so that Newton's method
 // does not converge. The motion stays bounded.
-TEST(ImplicitSprings, ReportWhereTheyAreNotSolved) {
+TEST(ImplicitSprings, ReportUnsolvedBodies) {
   Simulation simulation = test::make_simulation(make_rope(40, {1e12, 0}, 0.1));
   const Real start = simulation.diagnostics().gravitational_energy;
   const AdvanceReport report = simulation.advance(10);

@@ -88,7 +88,7 @@ Scene make_oscillator(IntegratorId integrator, Real step) {
 
 // The spring stores k Y^2 / 2 elastically. The rest of m v^2 / 2 becomes plastic at the constant
 // force k Y. Then the mass oscillates with amplitude Y about the new rest length.
-TEST(Plasticity, LeavesASetThatEnergyTells) {
+TEST(Plasticity, LeavesTheSetOfItsEnergy) {
   constexpr Real kYield = 0.1;
   const Real set = (4.5 - 100 * kYield * kYield / 2) / (100 * kYield);
   for (const bool implicit : {false, true}) {
@@ -123,7 +123,7 @@ TEST(Plasticity, LeavesASetThatEnergyTells) {
   }
 }
 
-TEST(Tearing, IsForGood) {
+TEST(Tearing, IsPermanent) {
   for (const bool implicit : {false, true}) {
     Scene scene = make_oscillator(IntegratorId::velocity_verlet, 1e-3);
     scene.materials[0].tearing_strain = 0.2;  // the oscillation would reach 0.3
@@ -201,7 +201,7 @@ TEST(SpringChanges, ArePartOfTheHash) {
   EXPECT_NE(one.state_hash(), other.state_hash());
 }
 
-TEST(SpringChanges, StayWhereBodiesComeAndGo) {
+TEST(SpringChanges, AreKeptAtChangesOfBodies) {
   Scene scene = make_torn_block(StepControl::fixed);
   Simulation simulation = test::make_simulation(scene);
   simulation.advance(50);

@@ -96,7 +96,7 @@ TEST(Volume, HasTheEnergyOfTheCompression) {
               0.5 * 1000 * 2 * 4 * 0.01 * 0.12 * 0.12, 1e-12);
 }
 
-TEST(Volume, HasNoForceWhereItIsKept) {
+TEST(Volume, HasNoForceIfItIsKept) {
   const Mat3 shear = (Mat3() << 2, 0.3, 0, 0, 0.5, 0, 0, 0, 1).finished();
   const test::ForceProbe probe(make_block(shear));
   for (Index i = 0; i < 60; ++i) EXPECT_LT(probe.force(0, i).norm(), 1e-12);
@@ -160,7 +160,7 @@ TEST(Volume, HasTheSameBitsForAnyThreads) {
   }
 }
 
-TEST(Volume, IsNotKeptWhereSpringsTear) {
+TEST(Volume, IsNotKeptIfSpringsTear) {
   Scene scene = make_block(Mat3::Identity());
   scene.materials[0].tearing_strain = 0.5;
   ASSERT_EQ(find_errors(scene).size(), 1U);

@@ -26,7 +26,7 @@ Scene make_rigid_scene() {
   return scene;
 }
 
-TEST(Rigid, StartsWhereItIsPut) {
+TEST(Rigid, StartsAtItsPlace) {
   const Simulation simulation = test::make_simulation(make_rigid_scene());
   const BodyView body = simulation.bodies()[0];
   // A quarter turn about z maps (x, y) to (-y, x).

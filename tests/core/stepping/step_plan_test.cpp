@@ -122,7 +122,7 @@ struct RecordingObserver : StageObserver {
   std::vector<std::string> record;
 };
 
-TEST(StepPlan, TellsTheObserverOfEachStage) {
+TEST(StepPlan, ReportsEachStageToTheObserver) {
   Scene scene = scene_of({make_spring_body()});
   scene.numerics.integrator = IntegratorId::symplectic_euler;
   Simulation simulation = test::make_simulation(scene);
@@ -139,7 +139,7 @@ TEST(StepPlan, TellsTheObserverOfEachStage) {
   EXPECT_THAT(observer.record, IsEmpty());
 }
 
-TEST(StepPlan, TellsTheObserverOfStagesUnderLocalControl) {
+TEST(StepPlan, ReportsStagesUnderLocalControl) {
   Scene scene = scene_of({make_spring_body()});
   scene.numerics.integrator = IntegratorId::velocity_verlet;
   scene.numerics.control = StepControl::local;

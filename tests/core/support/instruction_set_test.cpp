@@ -63,7 +63,7 @@ TEST(InstructionSet, ASimulationIsRefusedOneThatTheMachineLacks) {
   EXPECT_TRUE(Simulation::create(scene));
 }
 
-TEST(InstructionSet, ASimulationGoesOnWithItsOwn) {
+TEST(InstructionSet, ASimulationKeepsItsOwn) {
   const Scene scene = test::make_shaken_vat(IntegratorId::velocity_verlet);
   for (const InstructionSet set : available_instruction_sets()) {
     Simulation simulation = Simulation::create(scene, nullptr, set).value();

@@ -45,7 +45,7 @@ TEST(CoupledLiquids, HaveSurfacesOfCurvatureByWendlandsKernel) {
   EXPECT_EQ(errors_of(find_errors(scene)), "not_allowed /materials/0/liquid/surface_tension");
 }
 
-TEST(CoupledLiquids, AttractThemselvesWhereTheyMayPull) {
+TEST(CoupledLiquids, AttractThemselvesIfTensionIsAllowed) {
   Scene scene = make_coupled();
   scene.surface_model = SurfaceModel::cohesion;
   scene.materials[0].liquid->surface_tension = 0.073;

@@ -89,7 +89,7 @@ TEST(ValidateInterfaces, FindsEveryMistakeAlone) {
   }
 }
 
-TEST(ValidateInterfaces, AllowEveryLawWhereItFits) {
+TEST(ValidateInterfaces, AllowEverySuitableLaw) {
   Scene scene = valid_scene();
   scene.pressure_solver = PressureSolver::tait;
   scene.default_interface = {.stiffness = 1, .restitution = 0.05};
@@ -115,7 +115,7 @@ TEST(ValidateInterfaces, AccuracyChoosesNumericsThatCanProject) {
   EXPECT_EQ(chosen.control, StepControl::adaptive);
 }
 
-TEST(ValidateInterfaces, HoldForWhatCommandsAdd) {
+TEST(ValidateInterfaces, ApplyToAddedBodies) {
   Scene scene = valid_scene();
   scene.pressure_solver = PressureSolver::tait;
   scene.interfaces = {{{"water", "vat"}, kSph, {}}};

@@ -318,7 +318,7 @@ TEST(Validate, SamplesOnlyTheBodyToBeAdded) {
   EXPECT_EQ(test::errors_of(find_body_errors(scene, present, body, "/body")), "too_many /body");
 }
 
-TEST(Validate, AddsABodyWhereTheVatIsNow) {
+TEST(Validate, AddsABodyInTheMovedVat) {
   Scene scene = valid_scene();
   scene.bodies.clear();
   BodyDescription body = valid_scene().bodies[2];  // 0.4 to 0.6 m of 0 to 1 m

@@ -39,7 +39,7 @@ TEST(Warnings, OfWallsThatAreThereOnly) {
   EXPECT_EQ(warnings_of(scene), "");
 }
 
-TEST(Warnings, OfNoContactWhereThereIsNone) {
+TEST(Warnings, OfNoContactIfThereIsNone) {
   Scene scene = two_balls(0.12);
   scene.forces.contacts = false;
   EXPECT_EQ(warnings_of(scene), "");
@@ -74,7 +74,7 @@ TEST(Warnings, OfRunTime) {
   EXPECT_TRUE(is_slow(sea(0.001)));
 }
 
-TEST(CostEstimate, AddsUpWhatBodiesNeed) {
+TEST(CostEstimate, AddsTheCostsOfBodies) {
   const auto cost = [](const Scene& scene) {
     const SampledBody body = sample_body(scene.bodies[0], scene.materials[0]);
     const SampledBody* pointer = &body;
@@ -169,7 +169,7 @@ TEST(Warnings, OfLawsThatALiquidOfTaitDoesNotHave) {
   EXPECT_THAT(warnings_of(scene), testing::Not(idle));
 }
 
-TEST(Warnings, OfWhatThePressureSolverDoesNotUse) {
+TEST(Warnings, OfConstantsThatThePressureSolverIgnores) {
   Scene scene = two_balls(1);
   scene.printed_pressure_force = true;
   scene.kernel = KernelId::cubic_spline;

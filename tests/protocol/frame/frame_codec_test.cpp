@@ -27,7 +27,7 @@ FrameDecoder decoder_after(const Stream& stream, std::size_t count) {
   return decoder;
 }
 
-TEST(Rans, GivesBackWhatWasPut) {
+TEST(Rans, DecodesTheEncodedSymbols) {
   std::mt19937 random(5);
   struct Symbol {
     std::uint32_t lane, start, frequency;
@@ -186,7 +186,7 @@ TEST(FrameCodec, ReferencesAreEarlierFramesOfOneScaleAndEpoch) {
   EXPECT_FALSE(can_refer(other, early));
 }
 
-TEST(FrameCodec, WhatHasNotMovedCostsNothing) {
+TEST(FrameCodec, UnmovedParticlesCostNoBytes) {
   World world(20'000);
   const GridFrame first = on_grid(world.state(), plain_scale());
   world.wait(1);

@@ -11,13 +11,13 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-TEST(FrameGrid, TakesTwiceTheErrorWhereTheDomainFits) {
+TEST(FrameGrid, TakesTwiceTheErrorIfTheDomainFits) {
   const FrameGrid grid = make_frame_grid({-1, 2, 0}, {3, 3, 1}, 1e-3);
   EXPECT_EQ(grid.quantum, 2e-3);
   EXPECT_EQ(grid.origin, (std::array<double, 3>{-1, 2, 0}));
 }
 
-TEST(FrameGrid, IsCoarserWhereTheDomainDoesNotFit) {
+TEST(FrameGrid, IsCoarserIfTheDomainDoesNotFit) {
   for (const double max_error : {1e-9, 0.0, -1.0, std::nan(""), kInfinity}) {
     const FrameGrid grid = make_frame_grid({-1, 2, 0}, {3, 3, 1}, max_error);
     EXPECT_EQ(grid.quantum, 4.0 / 65535) << max_error;
@@ -76,7 +76,7 @@ TEST(GridFrame, HasPositionsWithinHalfAQuantum) {
   }
 }
 
-TEST(GridFrame, PutsWhatIsOutsideTheGridToItsEdge) {
+TEST(GridFrame, MovesOutsideParticlesToTheEdge) {
   const double nan = std::nan("");
   const PublishedState state = liquid_state({{-1, 5, nan}, {-kInfinity, kInfinity, 1e300}});
   EXPECT_EQ(on_grid(state, make_frame_grid({0, 0, 0}, {1, 1, 1}, 0)).blocks[0].positions,

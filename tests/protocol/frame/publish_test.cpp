@@ -27,7 +27,7 @@ Simulation make_falling() {
   return make_simulation(scene);
 }
 
-TEST(Publish, CopiesAttributesOnlyWhereTheyAreWanted) {
+TEST(Publish, CopiesRequestedAttributesOnly) {
   const Simulation simulation = make_falling();
   const PublishedState plain = publish(simulation);
   for (const auto& column : plain.bodies[0].attributes) EXPECT_TRUE(column.empty());
@@ -74,7 +74,7 @@ Simulation make_pushed() {
   return make_simulation(scene);
 }
 
-TEST(Publish, AccelerationsAreWhatVelocitiesHaveChangedBy) {
+TEST(Publish, AccelerationsAreChangesOfVelocities) {
   Simulation simulation = make_pushed();
   StatePublisher publisher;
   PublishedState state;
@@ -114,7 +114,7 @@ Simulation make_balls() {
   return make_simulation(scene);
 }
 
-TEST(Publish, NothingOfWhatWasInAStateBeforeIsLeft) {
+TEST(Publish, ReplacesAllOfAReusedState) {
   const Simulation falling = make_falling();
   const Simulation balls = make_balls();
   StatePublisher publisher;

@@ -75,7 +75,7 @@ TEST_F(ObjectReaderTest, ReadsCounts) {
   EXPECT_EQ(error(), "");
 }
 
-TEST_F(ObjectReaderTest, RefusesWhatIsNoCount) {
+TEST_F(ObjectReaderTest, RefusesValuesOtherThanCounts) {
   for (const char* value : {"-1", "2.9", "8", "1", "-0.5", "1e300", "3000000000",
                             "18446744073709551616", "9007199254740994.0"}) {
     EXPECT_EQ(read("{\"n\": " + std::string(value) + "}").count("n", 2, 7), 2U) << value;
@@ -183,7 +183,7 @@ TEST_F(ObjectReaderTest, BoundsArrays) {
   EXPECT_EQ(error(), "wrong_type /at/l");
 }
 
-TEST_F(ObjectReaderTest, RefusesMembersThatNobodyAskedFor) {
+TEST_F(ObjectReaderTest, RefusesMembersThatWereNotRead) {
   ObjectReader& asked = read(R"({"a": 1, "b": 2, "c/d~e": 3})");
   asked.real("a", 0, 9);
   asked.member("absent");
@@ -192,6 +192,23 @@ TEST_F(ObjectReaderTest, RefusesMembersThatNobodyAskedFor) {
   EXPECT_EQ(errors[0].path, "/at/b");
   EXPECT_EQ(errors[1].path, "/at/c~1d~0e");
   EXPECT_EQ(errors[1].code, "unknown_member");
+}
+
+TEST_F(ObjectReaderTest, SuggestsMembersThatAreNotGiven) {
+  ObjectReader& asked = read(R"({"radus": 1, "mas": 2, "mass": 3, "colour": 4})");
+  for (const char* name : {"radius", "mass", "name"}) asked.member(name);
+  asked.refuse_unknown();
+  ASSERT_EQ(errors.size(), 3U);
+  EXPECT_EQ(errors[0].suggestion, "");
+  EXPECT_EQ(errors[1].suggestion, "") << "mass is given";
+  EXPECT_EQ(errors[2].suggestion, "radius");
+  EXPECT_EQ(errors[2].message, "is not a known member; did you mean \"radius\"?");
+}
+
+TEST_F(ObjectReaderTest, SuggestsNamesOfAnEnumeration) {
+  read(R"({"kind": "riged"})").choice("kind", {"liquid", "rigid"});
+  ASSERT_EQ(errors.size(), 1U);
+  EXPECT_EQ(errors[0].suggestion, "rigid");
 }
 
 TEST_F(ObjectReaderTest, AValueThatIsNoObjectIsOneError) {

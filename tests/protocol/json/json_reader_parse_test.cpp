@@ -30,7 +30,7 @@ TEST(ParseJson, GivesTheDocument) {
   EXPECT_EQ(document.value().dump(), "{\"a\":[1,-2.5,\"\xc3\xa9\",null,true]}");
 }
 
-TEST(ParseJson, RefusesWhatIsNotJson) {
+TEST(ParseJson, RefusesInvalidJson) {
   for (const char* text : {"",
                            " ",
                            "{",

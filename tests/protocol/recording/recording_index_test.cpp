@@ -80,7 +80,7 @@ std::string code_of(const Bytes& bytes) {
   return index ? "" : index.errors()[0].code;
 }
 
-TEST(RecordingIndex, ComesBackAsItWas) {
+TEST(RecordingIndex, IsReadUnchanged) {
   const File file = make_file();
   const Bytes bytes = file.finished();
   const Result<RecordingIndex> index = read(bytes);

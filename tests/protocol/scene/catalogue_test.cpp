@@ -37,7 +37,7 @@ constexpr const char* kMinimal = R"({"format": "vat.scene/1", "materials": [], "
 constexpr const char* kTetrahedron =
     "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
 
-TEST(WriteScene, EveryCatalogueSceneComesBackBitByBit) {
+TEST(WriteScene, EveryCatalogueSceneIsReadBitByBit) {
   const Result<Catalogue> catalogue = Catalogue::open(kScenesFolder);
   ASSERT_EQ(lines(catalogue), "");
   ASSERT_GE(catalogue.value().entries().size(), 6U);
@@ -49,7 +49,7 @@ TEST(WriteScene, EveryCatalogueSceneComesBackBitByBit) {
   }
 }
 
-TEST(WriteScene, TheFullSceneComesBackBitByBit) {
+TEST(WriteScene, TheFullSceneIsReadBitByBit) {
   Scene scene = full_scene();
   scene.bodies[0].position = {0.1 + 0.2, -0.0,
                               1.0 / 3.0};  // values that short decimal texts do not represent

@@ -30,7 +30,7 @@ TEST(NumericsJson, AccuracyChoosesTheRest) {
   EXPECT_NEAR(numerics.step, 0.05 / 4, 1e-12);
 }
 
-TEST(NumericsJson, AccuracyIsWrittenInPlaceOfWhatItChose) {
+TEST(NumericsJson, AccuracyReplacesTheChosenNumerics) {
   const Result<Scene> scene = read(R"({"accuracy": 1e-3, "tick": 0.05})");
   ASSERT_TRUE(scene);
   const Json written = write_scene(scene.value());

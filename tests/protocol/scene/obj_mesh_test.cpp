@@ -30,7 +30,7 @@ TEST(ReadObj, CutsPolygonsIntoTriangles) {
   EXPECT_EQ(mesh.value().triangles.size(), 2U);
 }
 
-TEST(ReadObj, JoinsObjectsAndIgnoresWhatIsNoSurface) {
+TEST(ReadObj, JoinsObjectsAndIgnoresOtherElements) {
   const Result<MeshShape> mesh = read_obj(
       "mtllib none.mtl\no one\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvt 0 0\nf 1/1/1 2/1/1 3/1/1\n"
       "o two\nusemtl x\nv 0 0 1\nl 1 2\np 1\nf 1 2 4\n",

@@ -15,7 +15,7 @@ namespace {
 
 using namespace test;
 
-TEST(SavedCatalogue, GoesOnFromItsBytes) {
+TEST(SavedCatalogue, ContinuesFromItsBytes) {
   for (const auto& file : std::filesystem::directory_iterator(VAT_SOURCE_DIR "/protocol/scenes")) {
     if (file.path().extension() != ".json") continue;
     SCOPED_TRACE(file.path().stem().string());

@@ -52,7 +52,7 @@ Result<Scene> scene_of(const std::string& kind, const std::string& solver) {
 class SavedSize : public testing::TestWithParam<std::pair<const char*, const char*>> {};
 
 /// The bound per particle and spring exceeds the actual size, but not by a multiple.
-TEST_P(SavedSize, GrowsByNoMoreThanIsTold) {
+TEST_P(SavedSize, GrowsByAtMostTheGivenSize) {
   const Result<Scene> scene = scene_of(GetParam().first, GetParam().second);
   ASSERT_TRUE(scene.ok()) << scene.errors().front().path << scene.errors().front().message;
   const Size coarse = size_of(scene.value(), 1);

@@ -57,7 +57,7 @@ Json fine_scene(const Json& document) {
       {"bodies", Json::array()}};
 }
 
-TEST(SceneMistakes, OneFileTellsAllOfThemAtOnceAndNothingElse) {
+TEST(SceneMistakes, OneFileReportsAllAtOnceAndNoOthers) {
   const Mistakes expected = all_mistakes();
   ASSERT_GE(expected.size(), 30U);
 

@@ -254,7 +254,7 @@ TEST(SceneJson, RefusesOtherFormats) {
   EXPECT_EQ(lines(read_scene(Json(7), no_meshes)), "wrong_type \n");
 }
 
-TEST(SceneJson, MalformedTextHasOneErrorOfItsOwn) {
+TEST(SceneJson, MalformedTextHasOneError) {
   const std::string deep(100'000, '[');
   const std::pair<std::string, std::string> cases[]{
       {"", "parse_error \n"},

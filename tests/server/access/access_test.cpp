@@ -31,7 +31,7 @@ TEST_F(OpenAccess, LetsEverybodyInAsAController) {
   EXPECT_EQ(guest->result("session.join").at("role"), "controller");
 }
 
-TEST_F(OpenAccess, NobodyOwnsTheFirstSessionButAnAdmin) {
+TEST_F(OpenAccess, OnlyAnAdminOwnsTheFirstSession) {
   EXPECT_EQ(client->error("session.close", {{"session", "s1"}}).at("code"), 1006);
   EXPECT_EQ(client->error("session.configure").at("code"), 1006);
   const auto admin = connect_admin();
@@ -41,7 +41,7 @@ TEST_F(OpenAccess, NobodyOwnsTheFirstSessionButAnAdmin) {
   admin->result("session.close", {{"session", "s1"}});
 }
 
-TEST_F(OpenAccess, WhoMakesASessionOwnsIt) {
+TEST_F(OpenAccess, TheCreatorOwnsASession) {
   const std::string own =
       client->result("session.create", {{"name", "own"}, {"scene", "mixed"}}).at("session");
   const auto guest = join(own);
@@ -50,7 +50,7 @@ TEST_F(OpenAccess, WhoMakesASessionOwnsIt) {
   client->result("session.close", {{"session", own}});
 }
 
-TEST_F(OpenAccess, WhoMakesASessionMayCloseItFromOutside) {
+TEST_F(OpenAccess, TheCreatorMayCloseASessionFromOutside) {
   const std::string own =
       client->result("session.create", {{"name", "own"}, {"scene", "mixed"}}).at("session");
   EXPECT_EQ(connect()->error("session.close", {{"session", own}}).at("code"), 1006);
@@ -149,7 +149,7 @@ TEST_F(Access, AnInvitationOpensOneSessionAndNoOther) {
   EXPECT_EQ(list.at(0).at("session"), own);
 }
 
-TEST_F(Access, AnInvitationIsGoodAsOftenAsItSays) {
+TEST_F(Access, AnInvitationIsValidForItsNumberOfUses) {
   const auto owner = this->owner();
   const std::string twice =
       owner->result("session.invite", {{"role", "viewer"}, {"uses", 2}}).at("token");
@@ -303,7 +303,7 @@ TEST_F(ServeAccessTest, IsOpenOnlyIfAllClientsAreOnThisMachine) {
   EXPECT_EQ(made().settings.mode, AccessMode::token);
 }
 
-TEST_F(ServeAccessTest, MakesAnAdminsTokenWhereOneIsNeededAndNotGiven) {
+TEST_F(ServeAccessTest, MakesANeededAdminTokenIfNoneIsGiven) {
   EXPECT_TRUE(made().made_token.empty());
   EXPECT_FALSE(made().settings.admin);
   settings.access = "token";
@@ -325,7 +325,7 @@ TEST_F(ServeAccessTest, TakesTheFirstLineOfAFileBeforeTheVariable) {
   EXPECT_EQ(made().settings.admin, hash_of_token(kToken));
 }
 
-TEST_F(ServeAccessTest, RefusesWhatCannotBeReadOrGuessesWouldFind) {
+TEST_F(ServeAccessTest, RefusesUnreadableFilesAndWeakTokens) {
   settings.admin_token_file = folder.file("missing");
   EXPECT_EQ(refusal(), "unreadable_file");
   folder.write("empty", "");

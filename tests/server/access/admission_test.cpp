@@ -35,7 +35,7 @@ TEST(TokenBucket, HoldsNoMoreThanABurst) {
 }
 
 // Messages larger than a burst pass occasionally, at the permitted average rate.
-TEST(TokenBucket, WhatIsMoreThanABurstIsOwed) {
+TEST(TokenBucket, AnExcessOverTheBurstDelaysTheNext) {
   const SteadyClock::time_point start;
   TokenBucket bucket(10, 5, start);
   EXPECT_FALSE(bucket.take(25, start));
@@ -100,7 +100,7 @@ TEST(MessageMeter, RefusedMessagesBeyondTheirLimitAreAFlood) {
   EXPECT_TRUE(meter.count_bytes(1, now)->is_flood);
 }
 
-TEST(ResourceBudget, GivesBackWhatIsNotHeldAnyMore) {
+TEST(ResourceBudget, ReturnsReleasedResources) {
   ResourceBudget budget({100, 50});
   {
     auto share = budget.take({60, 10});
@@ -130,7 +130,7 @@ TEST(ResourceBudget, ASharesChangeFitsOrChangesNothing) {
   EXPECT_EQ(budget.used().particles, 100U);
 }
 
-TEST(ResourceBudget, WhatFitsOnceIsGivenOnceHoweverManyAskAtOnce) {
+TEST(ResourceBudget, GrantsTheLastResourcesToOneOfManyRequests) {
   ResourceBudget budget({1000, 1000});
   std::atomic<int> given = 0;
   std::vector<ResourceShare> shares;

@@ -81,7 +81,7 @@ TEST_F(Outbox, TakesThreeFramesThatAreNotAcknowledged) {
   EXPECT_EQ(last_number(), 51u);
 }
 
-TEST_F(Outbox, WakesOnceWhereAFrameWasMissed) {
+TEST_F(Outbox, WakesOnceIfAFrameWasMissed) {
   offer(1, 3);
   EXPECT_TRUE(outbox.acknowledge(1, now));
   EXPECT_EQ(waker->count, 0) << "no frame was missed";
@@ -105,7 +105,7 @@ TEST_F(Outbox, AnAcknowledgementIsForAllBeforeIt) {
   EXPECT_EQ(frame_count(), 6u);
 }
 
-TEST_F(Outbox, RefusesToAcknowledgeWhatWasNotSent) {
+TEST_F(Outbox, RefusesAcknowledgementsOfUnsentFrames) {
   EXPECT_FALSE(outbox.acknowledge(0, now));
   EXPECT_FALSE(outbox.acknowledge(1, now));
   offer(1, 5);
@@ -171,7 +171,7 @@ TEST_F(Outbox, ControlThatWaitsHoldsUpNoFrame) {
 }
 
 // The transport may report late that the socket has accepted the frame.
-TEST_F(Outbox, WhatIsAcknowledgedWaitsNoLonger) {
+TEST_F(Outbox, AcknowledgedFramesDoNotWait) {
   connection->stall(true);
   offer(1, 1);
   EXPECT_FALSE(outbox.frame_channel(subscription).is_ready);
@@ -284,7 +284,7 @@ TEST_F(Outbox, FramesDoNotCountForTheControlQueue) {
   EXPECT_FALSE(connection->close_code().has_value());
 }
 
-TEST_F(Outbox, WhatTheSocketHasTakenIsQueuedNoLonger) {
+TEST_F(Outbox, BytesInTheSocketAreNotQueued) {
   const std::string event = make_text(500'000);
   for (int i = 0; i < 20; ++i) {
     connection->stall(true);
@@ -320,7 +320,7 @@ TEST_F(Outbox, AJoinMakesNoRoomForAFrameBesideOneThatWaits) {
   EXPECT_TRUE(outbox.frame_channel(subscription).is_ready);
 }
 
-TEST_F(Outbox, WhoAcknowledgesNothingIsClosedOnceThePatienceIsOver) {
+TEST_F(Outbox, AClientWithoutAcknowledgementsIsClosedAfterThePatience) {
   constexpr std::chrono::seconds kPatience(30);
   offer(1, 1);
   now += kPatience / 2;
@@ -338,7 +338,7 @@ TEST_F(Outbox, WhoAcknowledgesNothingIsClosedOnceThePatienceIsOver) {
   EXPECT_FALSE(outbox.frame_channel(subscription).is_open);
 }
 
-TEST_F(Outbox, SilenceIsAllowedWhereThereIsNothingToAcknowledge) {
+TEST_F(Outbox, SilenceIsAllowedWithoutUnacknowledgedFrames) {
   constexpr std::chrono::seconds kPatience(30);
   offer(1, 3);
   EXPECT_TRUE(outbox.acknowledge(3, now));

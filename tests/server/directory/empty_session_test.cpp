@@ -141,7 +141,7 @@ class NeverIdle : public EmptySession {
   }
 };
 
-TEST_F(NeverIdle, PlaysOnWithNobodyInIt) {
+TEST_F(NeverIdle, PlaysWithoutParticipants) {
   create();
   server.clock().advance(30s);
   EXPECT_EQ(count("playing"), "1");
@@ -194,7 +194,7 @@ TEST_F(IdleSession, WakesForItsStatusesOnly) {
       << "one more for the check of expired sessions";
 }
 
-TEST_F(IdleSession, WithNobodyInItWakesForItsStatusesOnly) {
+TEST_F(IdleSession, EmptyWakesOnlyForStatuses) {
   client->result("session.leave");
   server.clock().advance(1s);
   const std::size_t tasks = server.clock().tasks_run();

@@ -137,7 +137,7 @@ TEST_F(SessionLifecycle, StoppingCancelsAllTimers) {
   EXPECT_EQ(server.clock().waiting(), 0U);
 }
 
-TEST_F(SessionLifecycle, WhoClosesASessionIsAnsweredAfterItsEarlierCommands) {
+TEST_F(SessionLifecycle, TheReplyToACloseFollowsThoseToEarlierCommands) {
   const int step = client->send("control.step", {{"ticks", 1000}});
   const int query = client->send("session.hash");
   const int close = client->send("session.close", {{"session", "s1"}});
@@ -165,7 +165,7 @@ TEST_F(SessionLifecycle, ASessionLivesOnWithoutClients) {
   EXPECT_EQ(find("s1").at("playing"), true);
 }
 
-TEST_F(SessionLifecycle, ClosingTellsAllWhoAreInIt) {
+TEST_F(SessionLifecycle, ClosingNotifiesAllParticipants) {
   create("second");
   const auto first = join("s2");
   const auto second = join("s2");
@@ -181,7 +181,7 @@ TEST_F(SessionLifecycle, ClosingTellsAllWhoAreInIt) {
   first->result("session.join", {{"session", "s1"}});
 }
 
-TEST_F(SessionLifecycle, ClosingAnswersWhatWaitsForAStep) {
+TEST_F(SessionLifecycle, ClosingAnswersRequestsThatWaitForAStep) {
   const auto guest = join();
   // The close arrives before the end of these ticks.
   const int step = guest->send("control.step", {{"ticks", 1000}});
@@ -238,7 +238,7 @@ TEST_F(SessionLifecycle, ASceneThatIsRefusedLeavesTheOldOneRunning) {
   EXPECT_EQ(hash(), hash_of(reference));
 }
 
-TEST_F(SessionLifecycle, StoppingTellsAllClientsAndEndsAllEffects) {
+TEST_F(SessionLifecycle, StoppingNotifiesAllClientsAndEndsAllEffects) {
   const auto outsider = connect();
   const int step = client->send("control.step", {{"ticks", 1000}});
   server.stop();

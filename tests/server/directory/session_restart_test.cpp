@@ -89,7 +89,7 @@ TEST_F(Restart, InvitationsEndInTimeAndWithTheirSession) {
       Database(folder + "/vat.db", Database::Mode::read).number("SELECT count(*) FROM tokens"), 0);
 }
 
-TEST_F(Restart, WhoComesBackHasItsRoleAndItsFrames) {
+TEST_F(Restart, AResumedParticipantHasItsRoleAndItsFrames) {
   Json joined;
   {
     const auto admin = connect_admin();
@@ -116,7 +116,7 @@ TEST_F(Restart, WhoComesBackHasItsRoleAndItsFrames) {
   EXPECT_DOUBLE_EQ(frame.scale.attribute_quanta[0], 1.0);
 }
 
-TEST_F(Restart, WhoIsWrittenDownWhileTheSessionStandsStillIsThereAfterACrash) {
+TEST_F(Restart, AParticipantOfAPausedSessionIsRestoredAfterACrash) {
   const auto guest = connect();
   const Json joined = guest->result("session.join", {{"session", "s1"}, {"name", "Bo"}});
   // A heartbeat is sent with a status, every half second, at least one second after the last
@@ -130,7 +130,7 @@ TEST_F(Restart, WhoIsWrittenDownWhileTheSessionStandsStillIsThereAfterACrash) {
   EXPECT_TRUE(is_written());
 }
 
-TEST_F(Restart, WhoWasKickedStaysSo) {
+TEST_F(Restart, AKickedParticipantIsNotRestored) {
   Json joined;
   {
     const auto admin = connect_admin();
@@ -146,7 +146,7 @@ TEST_F(Restart, WhoWasKickedStaysSo) {
   EXPECT_GT(back.at("participant"), joined.at("participant"));
 }
 
-TEST_F(Restart, WhatHasExpiredDoesNotComeBack) {
+TEST_F(Restart, ExpiredSessionsAreNotRestored) {
   limits.expire_after = 60s;
   limits.hibernate_after = 1s;
   limits.resume_time = 0ms;
@@ -190,7 +190,7 @@ TEST_F(Restart, AdminsSeeAllSessionsAndTheirPeople) {
   EXPECT_EQ(admin->error("server.drain").at("code"), 1006);
 }
 
-TEST_F(Restart, WhoIsLetIntoOneSessionOpensNoRecording) {
+TEST_F(Restart, ATokenOfOneSessionOpensNoRecording) {
   const auto guest = connect();
   const Json invited = connect_admin()->result("session.invite", {{"role", "controller"}});
   guest->result("access.enter", {{"token", invited.at("token")}});
@@ -198,7 +198,7 @@ TEST_F(Restart, WhoIsLetIntoOneSessionOpensNoRecording) {
   EXPECT_EQ(error.at("data").at("kind"), "not_allowed");
 }
 
-TEST_F(Restart, WhatCannotBeLoggedIsRefusedCountedAndChangesNothing) {
+TEST_F(Restart, CommandsThatCannotBeLoggedAreRefusedAndCounted) {
   const std::string before = host->hash();
   EXPECT_THAT(host->server.metrics(), HasSubstr("\nvat_storage_failures_total 0\n"));
   Database other(folder + "/vat.db", Database::Mode::create);
@@ -211,7 +211,7 @@ TEST_F(Restart, WhatCannotBeLoggedIsRefusedCountedAndChangesNothing) {
 }
 
 // A data folder of schema version 1 that contains a session with a held ball after 50 ticks.
-TEST(StoredByVersion1, ComesBackAsItWas) {
+TEST(StoredByVersion1, IsReadUnchanged) {
   const TemporaryFolder temporary;
   const std::string folder = temporary.file("data");
   std::filesystem::create_directories(folder);

@@ -32,7 +32,7 @@ class SavedScenesTest : public SavedStatesTest {
                   "shape": {"type": "sphere", "radius": 0.1}}]})");
 };
 
-TEST_P(SavedScenesTest, AreUsedWhereThoseOfTheCatalogueAre) {
+TEST_P(SavedScenesTest, AreUsedLikeThoseOfTheCatalogue) {
   save("my ball");
   const Json entry = listed("my ball");
   ASSERT_TRUE(entry.is_object());
@@ -52,7 +52,7 @@ TEST_P(SavedScenesTest, AreUsedWhereThoseOfTheCatalogueAre) {
   EXPECT_EQ(host->hash(), ball);
 }
 
-TEST_P(SavedScenesTest, WithoutASceneItIsWhatTheSessionGoesBackTo) {
+TEST_P(SavedScenesTest, WithoutASceneTheInitialOneIsSaved) {
   client().result("control.reset");
   const std::string start = host->hash();
   host->step(3);
@@ -85,7 +85,7 @@ TEST_P(SavedScenesTest, OnlyTheKeyOrAnAdminChangesOne) {
   EXPECT_TRUE(listed("mine").is_null());
 }
 
-TEST_P(SavedScenesTest, WhatIsWrongIsRefused) {
+TEST_P(SavedScenesTest, RefusesInvalidScenes) {
   EXPECT_EQ(client().error("scene.save", {{"name", "mixed"}, {"scene", scene}}).at("code"), 1006);
   EXPECT_EQ(client().error("scene.save", {{"name", "x"}, {"scene", "mixed"}}).at("data").at("path"),
             "/scene");

@@ -16,7 +16,7 @@ using testing::HasSubstr;
 
 const Json kFirst = {{"name", "first"}};
 
-TEST_P(SavedStatesTest, ALoadGoesOnExactly) {
+TEST_P(SavedStatesTest, ALoadContinuesExactly) {
   host->client->result("control.reset");
   const std::string start = host->hash();
   client().result("world.set_gravity", {{"gravity", {1, 0, -9}}});
@@ -41,7 +41,7 @@ TEST_P(SavedStatesTest, ALoadGoesOnExactly) {
   EXPECT_EQ(host->hash(), start);
 }
 
-TEST_P(SavedStatesTest, WhatWasHeldIsLetGo) {
+TEST_P(SavedStatesTest, ReleasesGrabs) {
   const Json grab =
       client().result("grab.start", {{"body", 3}, {"particle", 0}, {"target", {0.5, 0.5, 0.9}}});
   host->step(3);
@@ -139,7 +139,7 @@ TEST_P(SavedStatesTest, ATooLargeOneIsNotLoadedAndChangesNothing) {
 }
 
 // The log contains the loaded state, because the saved state may be deleted later.
-TEST_P(SavedStatesTest, ALoadIsThereAfterARestartAndSoIsWhatWasSaved) {
+TEST_P(SavedStatesTest, ALoadAndTheSavedStateSurviveARestart) {
   host->step(4);
   client().result("session.save", kFirst);
   client().result("session.save", {{"name", "second"}});
@@ -215,7 +215,7 @@ class SavedStateEntries : public testing::Test {
   LoneEnvironment environment_;
 };
 
-TEST_F(SavedStateEntries, AreUnpackedUpToWhatASessionMayBe) {
+TEST_F(SavedStateEntries, AreUnpackedUpToTheLimitOfASession) {
   const std::size_t most = max_state_bytes(environment_.limits);
   ASSERT_LT(most, std::size_t{1} << 30);
   SavedState state = grown();

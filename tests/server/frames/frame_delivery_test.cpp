@@ -107,7 +107,7 @@ TEST_F(FrameDeliveryTest, AViewerGetsTheTicksThatItAskedFor) {
 }
 
 // A newer state may have replaced the state of the divisible tick.
-TEST_F(FrameDeliveryTest, ATurnThatWasSkippedComesWithTheNextState) {
+TEST_F(FrameDeliveryTest, ASkippedTurnIsServedWithTheNextState) {
   const TestViewer third = add(every(3));
   for (const std::uint64_t tick : {1, 2, 4, 5, 7, 8}) {
     publish(tick);
@@ -116,7 +116,7 @@ TEST_F(FrameDeliveryTest, ATurnThatWasSkippedComesWithTheNextState) {
   EXPECT_EQ(third.ticks(), (Ticks{1, 4, 7}));
 }
 
-TEST_F(FrameDeliveryTest, WhoIsNotReadyGetsTheNewestOnceItIs) {
+TEST_F(FrameDeliveryTest, ABusyViewerReceivesTheNewestStateLater) {
   const TestViewer slow = add();
   const TestViewer quick = add();
   for (std::uint64_t tick = 1; tick <= 50; ++tick) {
@@ -132,7 +132,7 @@ TEST_F(FrameDeliveryTest, WhoIsNotReadyGetsTheNewestOnceItIs) {
   EXPECT_EQ(slow.ticks().size(), 4u) << "there is no new state";
 }
 
-TEST_F(FrameDeliveryTest, WhatShowsNothingNewIsLeftOut) {
+TEST_F(FrameDeliveryTest, UnchangedStatesAreOmitted) {
   const TestViewer viewer = add();
   publish(1, 0.5);
   for (std::uint64_t tick = 2; tick < 10; ++tick) {
@@ -144,7 +144,7 @@ TEST_F(FrameDeliveryTest, WhatShowsNothingNewIsLeftOut) {
   EXPECT_EQ(viewer.last().number, 2u);
 }
 
-TEST_F(FrameDeliveryTest, WhoComesToAStateAtRestGetsIt) {
+TEST_F(FrameDeliveryTest, ANewcomerReceivesAStateAtRest) {
   const TestViewer first = add();
   publish(1, 0.5);
   acknowledge_all(first);
@@ -155,7 +155,7 @@ TEST_F(FrameDeliveryTest, WhoComesToAStateAtRestGetsIt) {
 }
 
 // Also in a paused session, in which no newer state comes.
-TEST_F(FrameDeliveryTest, WhoRejectsAFrameGetsOneKeyFrame) {
+TEST_F(FrameDeliveryTest, ARejectedFrameIsFollowedByOneKeyFrame) {
   const TestViewer viewer = add();
   publish(1, 0.1);
   publish(2, 0.2);
@@ -182,7 +182,7 @@ TEST_F(FrameDeliveryTest, AnEpochBeginsWithAFrameForAll) {
   EXPECT_EQ(third.ticks(), (Ticks{4, 0}));
 }
 
-TEST_F(FrameDeliveryTest, WhoWasRemovedGetsNothing) {
+TEST_F(FrameDeliveryTest, ARemovedViewerReceivesNoFrames) {
   const TestViewer viewer = add();
   publish(1);
   delivery.remove(1);
@@ -191,7 +191,7 @@ TEST_F(FrameDeliveryTest, WhoWasRemovedGetsNothing) {
   EXPECT_EQ(viewer.ticks(), (Ticks{1}));
 }
 
-TEST_F(FrameDeliveryTest, ViewersWhoHoldTheSameShareOneEncoding) {
+TEST_F(FrameDeliveryTest, ViewersWithTheSameReferencesShareOneEncoding) {
   std::vector<TestViewer> viewers;
   for (int i = 0; i < 20; ++i) viewers.push_back(add());
   publish(1);
@@ -209,7 +209,7 @@ TEST_F(FrameDeliveryTest, ViewersWhoHoldTheSameShareOneEncoding) {
   EXPECT_EQ(late.ticks(), (Ticks{3, 4, 5}));
 }
 
-TEST_F(FrameDeliveryTest, ANewcomerToAStateAtRestSharesWhatComesNextSoon) {
+TEST_F(FrameDeliveryTest, ANewcomerToAStateAtRestSharesTheNextFrame) {
   const TestViewer first = add();
   publish(1, 0.5);
   const TestViewer second = add();
@@ -225,7 +225,7 @@ TEST_F(FrameDeliveryTest, ANewcomerToAStateAtRestSharesWhatComesNextSoon) {
 
 // Twenty groups with different quanta, ten of which have two viewers. Of eight slots, four belong
 // to the groups that waited longest. A viewer is omitted at most five times in a row.
-TEST_F(FrameDeliveryTest, NobodyWaitsForEverWhereThereAreTooManyGroups) {
+TEST_F(FrameDeliveryTest, EveryViewerHasATurnWithTooManyGroups) {
   constexpr std::size_t kGroups = 20;
   constexpr std::uint64_t kTicks = 100;
   std::vector<TestViewer> viewers;
@@ -253,7 +253,7 @@ TEST_F(FrameDeliveryTest, NobodyWaitsForEverWhereThereAreTooManyGroups) {
 }
 
 // No newer state comes for them.
-TEST_F(FrameDeliveryTest, EveryGroupSeesTheStateAtWhichTheSessionPauses) {
+TEST_F(FrameDeliveryTest, APausedSessionServesEveryGroup) {
   std::vector<TestViewer> viewers;
   for (std::size_t i = 0; i < 2 * kMaxFrameGroups + 1; ++i) {
     Subscription wish;
@@ -271,7 +271,7 @@ TEST_F(FrameDeliveryTest, EveryGroupSeesTheStateAtWhichTheSessionPauses) {
   EXPECT_TRUE(counted("vat_frames_encoded_total " + std::to_string(3 * kMaxFrameGroups + 1)));
 }
 
-TEST_F(FrameDeliveryTest, WhoIsTooSlowGetsAFractionOfTheRateTogetherWithTheOthers) {
+TEST_F(FrameDeliveryTest, SlowViewersShareTheFramesOfALowerRate) {
   const TestViewer quick = add();
   std::vector<TestViewer> slow = {add(), add(), add()};
   std::vector<std::size_t> acknowledged(slow.size());
@@ -303,7 +303,7 @@ TEST_F(FrameDeliveryTest, WhoIsTooSlowGetsAFractionOfTheRateTogetherWithTheOther
   EXPECT_EQ(quick.ticks().size(), 400U);
 }
 
-TEST_F(FrameDeliveryTest, WhoIsKeptSlowSeesTheStateAtWhichTheSessionPauses) {
+TEST_F(FrameDeliveryTest, ALimitedViewerReceivesTheStateAtThePause) {
   const TestViewer slow = add();
   std::uint64_t tick = 1;
   for (; slow.connection->frames().empty() || slow.last().stride < 4; ++tick) {
@@ -322,7 +322,7 @@ TEST_F(FrameDeliveryTest, WhoIsKeptSlowSeesTheStateAtWhichTheSessionPauses) {
 }
 
 // An eighth of a small body would not show its shape, and its frames are short anyway.
-TEST_F(FrameDeliveryTest, WhoIsSlowStillGetsAllOfFewParticles) {
+TEST_F(FrameDeliveryTest, ASlowViewerReceivesAllFramesOfFewParticles) {
   for (const auto& [count, least] : {std::pair(1000U, 3), std::pair(16000U, 0)}) {
     particles = count;
     const TestViewer slow = add();

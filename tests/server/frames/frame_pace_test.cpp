@@ -46,7 +46,7 @@ class FramePaceTest : public testing::Test {
 constexpr Level kBest = {1, 1, 3};
 constexpr Level kWorst = {4, 4, 0};
 
-TEST_F(FramePaceTest, WhoKeepsUpGetsAll) {
+TEST_F(FramePaceTest, AFastViewerReceivesAllFrames) {
   run(60s, true, 40ms);
   EXPECT_EQ(level(), kBest);
 }
@@ -76,7 +76,7 @@ TEST_F(FramePaceTest, AFewMissedFramesChangeNothing) {
   EXPECT_EQ(level(), kBest);
 }
 
-TEST_F(FramePaceTest, WhoMissesMostFramesGoesDownFaster) {
+TEST_F(FramePaceTest, ManyMissedFramesReduceTheRateFaster) {
   run(1s, false);
   EXPECT_GE(pace.stride(), 3U);
 }
@@ -155,7 +155,7 @@ class FrameWindowTest : public testing::Test {
   FrameWindow window;
 };
 
-TEST_F(FrameWindowTest, KnowsWhatIsInFlightAndSinceWhen) {
+TEST_F(FrameWindowTest, KnowsFramesInFlightAndTheirAges) {
   EXPECT_FALSE(window.waits_since());
   const auto first = now;
   window.sent(5, now);
@@ -199,18 +199,18 @@ TEST_F(FrameWindowTest, TheLeastIsForgottenAfterTwentySeconds) {
   EXPECT_DOUBLE_EQ(window.delays().least.count(), 0.1);
 }
 
-TEST(FrameGroups, AllWhereThereAreFew) {
+TEST(FrameGroups, AllIfThereAreFew) {
   EXPECT_THAT(choose_groups({}, 8), ElementsAre());
   const std::vector<GroupClaim> claims = {{1, 0}, {5, 0}, {3, 9}};
   EXPECT_THAT(choose_groups(claims, 3), ElementsAre(1, 2, 0)) << "largest first";
 }
 
-TEST(FrameGroups, HalfForTheLargestAndHalfForWhoHasWaited) {
+TEST(FrameGroups, HalfForTheLargestAndHalfForTheLongestWait) {
   const std::vector<GroupClaim> claims = {{100, 0}, {1, 7}, {50, 0}, {2, 1}, {40, 0}, {1, 8}};
   EXPECT_THAT(choose_groups(claims, 4), UnorderedElementsAre(0, 2, 5, 1));
 }
 
-TEST(FrameGroups, OfThoseWhoHaveWaitedAlikeTheLarger) {
+TEST(FrameGroups, TheLargerOfGroupsWithEqualWaits) {
   const std::vector<GroupClaim> claims = {{9, 0}, {1, 2}, {3, 2}, {2, 2}};
   EXPECT_THAT(choose_groups(claims, 2), UnorderedElementsAre(0, 2));
 }

@@ -66,7 +66,7 @@ TEST_F(FrameSourceTest, OneFrameServesAllOfACut) {
   EXPECT_EQ(frame()->header.tick, 2U);
 }
 
-TEST_F(FrameSourceTest, OnlyWhatShowsSomethingNewHasANumberOfItsOwn) {
+TEST_F(FrameSourceTest, OnlyChangedStatesHaveNewNumbers) {
   publish(make_state());
   EXPECT_EQ(source.number(), 1U);
   for (int i = 0; i < 10; ++i) publish(make_state());
@@ -110,7 +110,7 @@ TEST_F(FrameSourceTest, EveryOtherDifferenceIsAChange) {
   }
 }
 
-TEST_F(FrameSourceTest, WhatTheGridDoesNotTellIsNotShown) {
+TEST_F(FrameSourceTest, ChangesBelowTheGridAreOmitted) {
   publish(make_state(0.5));
   const auto coarse = frame();
   const auto fine = frame(kError / 10);
@@ -119,7 +119,7 @@ TEST_F(FrameSourceTest, WhatTheGridDoesNotTellIsNotShown) {
   EXPECT_FALSE(show_the_same(*fine, *frame(kError / 10)));
 }
 
-TEST_F(FrameSourceTest, CoarserByWhatIsAskedFor) {
+TEST_F(FrameSourceTest, CoarserByTheRequestedError) {
   publish(make_state());
   EXPECT_EQ(source.frame(cut(wish(kError), 4))->scale.grid.quantum, 8 * kError);
   const double finest = frame(0)->scale.grid.quantum;
@@ -147,7 +147,7 @@ TEST_F(FrameSourceTest, OnlyTheParticlesThatAreAskedFor) {
   EXPECT_EQ(part->scale.grid, frame()->scale.grid);
 }
 
-TEST_F(FrameSourceTest, BuildsOnWhatIsHeldAsFarAsThatGoes) {
+TEST_F(FrameSourceTest, UsesAvailableReferences) {
   FrameDecoder decoder;
   const auto show = [&](const HeldFrames& held) {
     const SharedFrame bytes = source.encode(*frame(), held, 1);

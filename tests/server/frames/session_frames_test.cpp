@@ -20,7 +20,7 @@ namespace {
 
 class SessionFrames : public SessionTest {};
 
-TEST_F(SessionFrames, AreWhatTheSubscriptionAsksFor) {
+TEST_F(SessionFrames, FollowTheSubscription) {
   client->result("control.step", {{"ticks", 5}});
   client->result("frames.subscribe", {{"every", 5},
                                       {"max_error", 1e-3},
@@ -100,7 +100,7 @@ TEST_F(SessionFrames, AccelerationsAreThoseOfTheLastTick) {
   EXPECT_NEAR(cube_at(4), 1, 1.1e-3);
 }
 
-TEST_F(SessionFrames, NothingIsEncodedForNobody) {
+TEST_F(SessionFrames, NothingIsEncodedWithoutSubscribers) {
   client->result("control.step", {{"ticks", 20}});
   EXPECT_NE(server.metrics().find("\nvat_frames_encoded_total 0\n"), std::string::npos);
   client->result("frames.subscribe");
@@ -109,7 +109,7 @@ TEST_F(SessionFrames, NothingIsEncodedForNobody) {
 }
 
 // More clients with different frames than the server encodes for one state.
-TEST_F(SessionFrames, EveryClientSeesTheStateAtWhichTheSessionPauses) {
+TEST_F(SessionFrames, APausedSessionServesEveryClient) {
   std::vector<std::unique_ptr<TestClient>> clients;
   for (std::size_t i = 0; i < kMaxFrameGroups + 2; ++i) {
     clients.push_back(join());
@@ -150,7 +150,7 @@ TEST_F(SessionFrames, AnAcknowledgementNamesTheTickWhileThereIsASession) {
   EXPECT_EQ(client->result("frames.ack", {{"number", 1}}), Json::object());
 }
 
-TEST_F(SessionFrames, NoFrameOfAnEndedEpochComesAfterTheDescription) {
+TEST_F(SessionFrames, NoFrameOfAnEndedEpochFollowsTheDescription) {
   client->result("frames.subscribe");
   for (int i = 0; i < 10; ++i) {
     client->result("control.step", {{"ticks", 10}});  // the window fills, so one frame is omitted
@@ -185,7 +185,7 @@ class SessionPatience : public SessionTest {
 };
 
 // Applies also to a state at rest: the server sent a frame and does not know whether it arrived.
-TEST_F(SessionPatience, WhoAcknowledgesNothingIsToldAndClosed) {
+TEST_F(SessionPatience, AClientWithoutAcknowledgementsIsNotifiedAndClosed) {
   client->result("frames.subscribe");
   client->wait_frame([](const GridFrame&) { return true; });
   const auto silent = join();
@@ -240,7 +240,7 @@ class SessionCoreTest : public testing::Test {
 
 // The second frame of each client refers to one frame, the following frames to two, as those of the
 // other clients do.
-TEST_F(SessionCoreTest, WhoComesBetweenTwoTicksSharesAKeyFrame) {
+TEST_F(SessionCoreTest, NewcomersBetweenTwoTicksShareAKeyFrame) {
   const auto first = subscribe();
   tick();
   tick();
@@ -258,7 +258,7 @@ TEST_F(SessionCoreTest, WhoComesBetweenTwoTicksSharesAKeyFrame) {
   }
 }
 
-TEST_F(SessionCoreTest, WhoComesWhileItPausesGetsAFrameAtOnce) {
+TEST_F(SessionCoreTest, ANewcomerToAPausedSessionReceivesAFrameAtOnce) {
   core.set_playing(false);
   EXPECT_EQ(subscribe()->frames().size(), 1U);
 }
@@ -289,7 +289,7 @@ class Block {
 };
 
 // A waiting state was published for the previous subscribers.
-TEST(FrameFeed, GivesNobodyAStateWithoutTheAttributesThatHeAskedFor) {
+TEST(FrameFeed, SendsNoStateWithoutTheRequestedAttributes) {
   ServerMetrics metrics;
   const ManualClock clock;
   boost::asio::thread_pool pool(1);

@@ -92,7 +92,7 @@ TEST(Imports, HaveSoManyBytesAtMost) {
   EXPECT_EQ(std::get<RpcError>(refused).data.at("limit"), "import_bytes");
 }
 
-TEST(Base64, IsReadWholeOrNotAtAll) {
+TEST(Base64, IsReadCompletelyOrRefused) {
   using Bytes = std::vector<std::uint8_t>;
   EXPECT_EQ(from_base64(""), Bytes());
   EXPECT_EQ(from_base64("Zg=="), Bytes{'f'});

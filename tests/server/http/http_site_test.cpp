@@ -35,7 +35,7 @@ TEST(RequestPath, Decodes) {
 }
 
 // Invalid paths: no path, broken escapes, parent folders, and zero bytes.
-TEST(RequestPath, RefusesWhatIsNotAPath) {
+TEST(RequestPath, RefusesInvalidPaths) {
   for (const char* target : {"",
                              "a",
                              "*",
@@ -248,7 +248,7 @@ TEST_F(HttpSite, AnUnchangedFileIsNotSentAgain) {
   EXPECT_EQ(rebuilt({"GET", "/", "", header(files({"GET", "/"}), "ETag")}).status, 200);
 }
 
-TEST_F(HttpSite, ReadyIsWhoTakesNewSessions) {
+TEST_F(HttpSite, ReadyMeansThatSessionsCanBeCreated) {
   const std::map<ServerPhase, std::string> phases = {{ServerPhase::starting, "starting"},
                                                      {ServerPhase::recovering, "recovering"},
                                                      {ServerPhase::ready, "ready"},
@@ -262,7 +262,7 @@ TEST_F(HttpSite, ReadyIsWhoTakesNewSessions) {
   }
 }
 
-TEST_F(HttpSite, WithoutAViewerTheRootSaysHowToBuildIt) {
+TEST_F(HttpSite, WithoutAViewerTheRootExplainsItsBuild) {
   const HttpHandler empty = make_site(folder.path() / "none");
   EXPECT_EQ(empty({"GET", "/"}).status, 503);
   EXPECT_THAT(empty({"GET", "/"}).body, HasSubstr("./vat serve"));

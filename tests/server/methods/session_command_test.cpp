@@ -267,7 +267,7 @@ TEST_F(SessionCommands, AnEmitterCloses) {
   EXPECT_EQ(hash(), hash_of(closed));
 }
 
-TEST_F(SessionCommands, WhatMayFlowInCountsForTheLimits) {
+TEST_F(SessionCommands, FutureInflowCountsForTheLimits) {
   const Json error = client->error("scene.load", {{"scene", scene_with_nozzle(200'000)}});
   EXPECT_EQ(error.at("code"), 1005);
   EXPECT_EQ(error.at("data").at("limit"), "particles");
@@ -316,14 +316,14 @@ TEST_F(PointerCommandsTest, EachBodyAndTheVatAreThingsOfTheirOwn) {
                                            R"(1 {"body":3,"to":2} 2)"));
 }
 
-TEST_F(PointerCommandsTest, WhoCameLastIsCarriedOutLast) {
+TEST_F(PointerCommandsTest, TheLastCommandIsExecutedLast) {
   add(1, "world.set_gravity", {{"to", 1}});
   add(2, "world.set_gravity", {{"to", 2}});
   add(1, "world.set_gravity", {{"to", 3}});
   EXPECT_THAT(take(), testing::ElementsAre(R"(2 {"to":2} 1)", R"(1 {"to":3} 2)"));
 }
 
-TEST_F(PointerCommandsTest, TellsWhoseWait) {
+TEST_F(PointerCommandsTest, ReportsWaitingClients) {
   add(2, "world.set_gravity", {{"to", 1}});
   EXPECT_TRUE(pointers.has_of(2));
   EXPECT_FALSE(pointers.has_of(1));
@@ -350,7 +350,7 @@ TEST_F(SessionTest, CommandsThatFollowAPointerWaitForTheNextTickAndAreAnsweredWi
   EXPECT_EQ(description.at("gravity"), Json({0, 0, -5})) << "an earlier command was executed";
 }
 
-TEST_F(SessionTest, AQuestionOfTheSameClientIsAnsweredAfterWhatItSentBefore) {
+TEST_F(SessionTest, AReadIsAnsweredAfterEarlierCommandsOfItsClient) {
   client->result("control.set_speed", {{"speed", 0.05}});
   client->result("control.play");
   const std::string before = hash();

@@ -122,7 +122,7 @@ TEST_F(SessionControl, AStepOfAClientThatGoesEnds) {
   EXPECT_EQ(client->result("control.step").at("tick"), now + 1);
 }
 
-TEST_F(SessionControl, TheSpeedIsToldAndKept) {
+TEST_F(SessionControl, TheSpeedIsReportedAndKept) {
   client->result("control.set_speed", {{"speed", 0.25}});
   const Json status = wait_status([](const Json& s) { return s.at("speed") == 0.25; });
   EXPECT_EQ(status.at("real_time_factor"), 0);
@@ -179,7 +179,7 @@ TEST_F(SessionFaults, AGuardEndsAStep) {
 }
 
 // A connection that throws when sending represents any fault in a turn, such as a lack of memory.
-TEST_F(SessionFaults, AFaultPausesTheSessionWhichGoesOnListening) {
+TEST_F(SessionFaults, AFaultPausesTheSessionWhichStillAnswers) {
   const auto other = join();
   client->connection->fail(true);
   other->send("control.play");  // sending its status to this client fails

@@ -21,7 +21,7 @@ Json ball() {
                          "shape": {"type": "sphere", "center": [0.3, 0.3, 0.8], "radius": 0.08}})");
 }
 
-TEST_F(SceneGet, WhatIsLoadedLeadsToTheSameBitsAgain) {
+TEST_F(SceneGet, ALoadedResultLeadsToTheSameBits) {
   const std::string start = hash();
   client->result("control.step", {{"ticks", 3}});
   client->result("world.remove_body", {{"body", 2}});
@@ -32,7 +32,7 @@ TEST_F(SceneGet, WhatIsLoadedLeadsToTheSameBitsAgain) {
   EXPECT_EQ(hash_from(scene), start);
 }
 
-TEST_F(SceneGet, TheCurrentOneHasWhatCommandsHaveChanged) {
+TEST_F(SceneGet, TheCurrentOneHasTheChangesOfCommands) {
   EXPECT_EQ(current(), get());
   client->result("world.remove_body", {{"body", 1}});
   client->result("world.add_body", {{"body", ball()}});
@@ -52,7 +52,7 @@ TEST_F(SceneGet, TheCurrentOneHasWhatCommandsHaveChanged) {
   EXPECT_EQ(get(), scene);
 }
 
-TEST_F(SceneGet, OfTheCatalogueWhateverRuns) {
+TEST_F(SceneGet, ReturnsACatalogueSceneDuringAnother) {
   EXPECT_EQ(get({{"scene", "unstable"}}), write_scene(to_scene(unstable_scene_text())));
   const Json error = client->error("scene.get", {{"scene", "none"}});
   EXPECT_EQ(error.at("data").at("kind"), "no_such_scene");
@@ -104,7 +104,7 @@ class SceneGetLimits : public testing::Test {
 };
 
 // Every returned scene can be sent back: reply and loading message have the same limit.
-TEST_F(SceneGetLimits, WhatIsGivenFitsIntoAMessage) {
+TEST_F(SceneGetLimits, TheResultFitsIntoAMessage) {
   const std::size_t bytes = write_scene(to_scene(mixed_scene_text())).dump().size();
   const std::size_t least = refused_up_to(
       [&](std::size_t most) {

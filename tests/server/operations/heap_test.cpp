@@ -19,7 +19,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(Heap, InUseIsWhatWasTakenAndNotGivenBack) {
+TEST(Heap, InUseIsTheDifferenceOfAllocatedAndFreed) {
   const std::size_t before = heap_in_use();
   auto small = std::make_unique<std::array<char, 1'000'000>>();
   auto large = std::make_unique<std::array<char, 10'000'000>>();  // allocated by mmap
@@ -31,7 +31,7 @@ TEST(Heap, InUseIsWhatWasTakenAndNotGivenBack) {
 
 // One in 256 small blocks of another thread stays in use. The allocator does not release memory by
 // itself, because a used block is at the end of its arena.
-TEST(Heap, GivesBackWhatLiesBetweenPiecesInUse) {
+TEST(Heap, ReturnsFreePagesBetweenUsedOnes) {
   constexpr std::size_t kPieces = 100'000;
   constexpr std::size_t kPieceBytes = 400;
   constexpr double kGiven = 0.9 * kPieces * kPieceBytes;

@@ -27,7 +27,7 @@ ServerMetrics::Gauges make_present() {
   return present;
 }
 
-TEST(ServerMetrics, WhatIsSoNow) {
+TEST(ServerMetrics, CurrentValues) {
   const std::string text = ServerMetrics().to_text(make_present());
   EXPECT_THAT(text, testing::StartsWith(
                         "# HELP vat_build_info Version, and instruction set of all sessions.\n"
@@ -92,7 +92,7 @@ TEST(ServerMetrics, StagesOfOneNameAreOne) {
                               "vat_stage_calls_total{stage=\"walls\"} 3\n"));
 }
 
-TEST(ServerMetrics, FramesByWhatBecameOfThem) {
+TEST(ServerMetrics, FramesByOutcome) {
   ServerMetrics metrics;
   metrics.add_encoded_frame(250ms, true);
   metrics.add_encoded_frame(125ms, false);
@@ -138,7 +138,7 @@ const Json* find_stage(const Json& stats, const std::string& name) {
   return nullptr;
 }
 
-TEST_F(SessionStats, TellWhatTheTicksOfTheSceneCost) {
+TEST_F(SessionStats, HaveTheCostOfTicks) {
   client->result("control.step", {{"ticks", 3}});
   client->result("scene.load", {{"scene", "mixed"}});
   EXPECT_EQ(client->result("session.stats").at("ticks"), 0) << "a new scene resets the statistics";
@@ -162,7 +162,7 @@ TEST_F(SessionStats, TellWhatTheTicksOfTheSceneCost) {
   }
 }
 
-TEST_F(SessionStats, CountWhatSleeps) {
+TEST_F(SessionStats, CountSleepingBodies) {
   Json scene = Json::parse(R"({"format": "vat.scene/1", "gravity": [0, 0, 0],
       "sleeping": {"after": 0.1}, "materials": [{"name": "wood"}],
       "bodies": [{"name": "block", "kind": "rigid", "material": "wood", "spacing": 0.1,

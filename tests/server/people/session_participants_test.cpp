@@ -33,7 +33,7 @@ class FewParticipants : public SessionParticipants {
   FewParticipants() : SessionParticipants(limits_with(&ServerLimits::max_clients_per_session, 2)) {}
 };
 
-TEST_F(SessionParticipants, AreToldWhoTheyAre) {
+TEST_F(SessionParticipants, ReceiveTheirNumbersAndRoles) {
   const auto guest = connect();
   const Json joined = guest->result("session.join", {{"name", "Ada Łovelace"}});
   EXPECT_EQ(joined.at("participant"), 2);
@@ -146,7 +146,7 @@ TEST_F(SessionParticipants, StayTheSameOnTheirOwnConnectionToo) {
   EXPECT_EQ(guest->connection->close_code(), std::nullopt);
 }
 
-TEST_F(SessionParticipants, ATokenOfNobodyMakesAFurtherOne) {
+TEST_F(SessionParticipants, AnUnknownTokenCreatesANewParticipant) {
   const auto guest = connect();
   const Json joined = guest->result("session.join", {{"resume", "AAAAAAAAAAAAAAAAAAAAAA"}});
   EXPECT_EQ(joined.at("participant"), 2);
@@ -154,7 +154,7 @@ TEST_F(SessionParticipants, ATokenOfNobodyMakesAFurtherOne) {
   EXPECT_NE(joined.at("resume"), "AAAAAAAAAAAAAAAAAAAAAA");
 }
 
-TEST_F(SessionParticipants, WhoHasLeftIsNotResumed) {
+TEST_F(SessionParticipants, AParticipantThatLeftIsNotResumed) {
   const auto guest = connect();
   const Json joined = guest->result("session.join");
   guest->result("session.leave");
@@ -172,7 +172,7 @@ TEST_F(SessionParticipants, ATokenIsOfOneSession) {
   EXPECT_EQ(other.at("resumed"), false);
 }
 
-TEST_F(AwayForAMoment, LeaveAndLetGoOfWhatTheyHeld) {
+TEST_F(AwayForAMoment, LeaveAndReleaseTheirGrabs) {
   auto guest = connect();
   const Json joined = guest->result("session.join");
   const std::uint64_t grab = guest->grab(3);
@@ -189,7 +189,7 @@ TEST_F(AwayForAMoment, LeaveAndLetGoOfWhatTheyHeld) {
   EXPECT_EQ(guest->result("session.join", resume_params(joined)).at("resumed"), false);
 }
 
-TEST_F(FewParticipants, TheFirstOfTooManyWhoAreAwayLeaves) {
+TEST_F(FewParticipants, TheFirstOfTooManyAbsentOnesLeaves) {
   std::vector<Json> joined;
   for (int i = 0; i < 3; ++i) {
     auto guest = connect();

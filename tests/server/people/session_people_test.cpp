@@ -37,7 +37,7 @@ TEST_F(SessionPeople, AnOwnerGivesAndTakesRoles) {
   EXPECT_EQ(error.at("data").at("path"), "/participant");
 }
 
-TEST_F(SessionPeople, WhoLosesControlLetsGo) {
+TEST_F(SessionPeople, ALostRoleReleasesGrabs) {
   const std::uint64_t grab = controller_->grab(3);
   EXPECT_EQ(owner_->error("grab.end", {{"grab", grab}}).at("code"), 1006)
       << "the grab of another participant";
@@ -89,13 +89,13 @@ TEST_F(SessionPeople, ControlIsAskedForAndHandedOver) {
       << "the participant already has control";
 }
 
-TEST_F(SessionPeople, AnOwnerKeepsWhatItHandsOver) {
+TEST_F(SessionPeople, AnOwnerKeepsTheGrantedRole) {
   owner_->result("control.hand_over", {{"participant", viewer_number_}});
   EXPECT_EQ(role_of(*owner_), "owner");
   EXPECT_EQ(owner_->error("control.hand_over", {{"participant", viewer_number_}}).at("code"), 1006);
 }
 
-TEST_F(SessionPeople, WhoIsKickedIsGoneAndItsTokenWithIt) {
+TEST_F(SessionPeople, AKickEndsTheParticipantAndItsToken) {
   const std::uint64_t grab = controller_->grab(3);
   owner_->result("participant.kick", {{"participant", controller_number_}, {"reason", "enough"}});
   controller_->wait_closed();

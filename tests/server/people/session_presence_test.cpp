@@ -41,7 +41,7 @@ class IdleGrabs : public Presence {
   IdleGrabs() : Presence(short_grabs()) {}
 };
 
-TEST_F(Presence, WhoComesIsToldOfThoseThereAndTheyOfIt) {
+TEST_F(Presence, NewcomersAndOthersReceiveEachOther) {
   const auto guest = connect();
   const Json joined = guest->result("session.join", {{"name", "Ada"}});
   const std::uint64_t number = joined.at("participant");
@@ -54,7 +54,7 @@ TEST_F(Presence, WhoComesIsToldOfThoseThereAndTheyOfIt) {
   EXPECT_EQ(client->result("presence.list").at("participants").at(1), expected);
 }
 
-TEST_F(Presence, TellsWhoIsAwayAndWhoHasGone) {
+TEST_F(Presence, HasAbsentAndFormerParticipants) {
   auto guest = connect();
   const Json joined = guest->result("session.join");
   const std::uint64_t number = joined.at("participant");
@@ -68,7 +68,7 @@ TEST_F(Presence, TellsWhoIsAwayAndWhoHasGone) {
                      [&](const Json& params) { return params.at("left") == Json({number}); });
 }
 
-TEST_F(Presence, TellsNamesRolesAndWhatIsHeld) {
+TEST_F(Presence, HasNamesRolesAndGrabs) {
   const auto guest = connect();
   const std::uint64_t number = guest->result("session.join").at("participant");
   guest->result("participant.rename", {{"name", "Bob"}});
@@ -90,7 +90,7 @@ TEST_F(Presence, TellsNamesRolesAndWhatIsHeld) {
   });
 }
 
-TEST_F(Presence, TellsWhereSomebodyPoints) {
+TEST_F(Presence, HasPointers) {
   const auto guest = connect();
   const std::uint64_t number = guest->result("session.join").at("participant");
   const Json place = {{"position", {1, 2, 3}}};
@@ -106,7 +106,7 @@ TEST_F(Presence, TellsWhereSomebodyPoints) {
 }
 
 // The session is paused, so only the pointer causes work.
-TEST_F(Presence, IsToldTenTimesASecondAtMostAndTheLastAlways) {
+TEST_F(Presence, IsSentTenTimesASecondAtMostAndTheLastAlways) {
   const auto guest = connect();
   const std::uint64_t number = guest->result("session.join").at("participant");
   server.clock().advance(250ms);
@@ -125,7 +125,7 @@ TEST_F(Presence, IsToldTenTimesASecondAtMostAndTheLastAlways) {
   EXPECT_EQ(client->events("presence.changed").size(), 2u);
 }
 
-TEST_F(Presence, TellsOfAHundredAtMost) {
+TEST_F(Presence, HasAHundredParticipantsAtMost) {
   std::vector<std::unique_ptr<TestClient>> guests;
   for (int i = 0; i < 101; ++i) guests.push_back(join());
   const Json list = client->result("presence.list").at("participants");

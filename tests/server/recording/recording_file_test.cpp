@@ -126,7 +126,7 @@ ResumeState make_state() {
   return state;
 }
 
-TEST_F(RecordingFileTest, StateComesBackAsItWas) {
+TEST_F(RecordingFileTest, StateIsReadUnchanged) {
   const ResumeState state = make_state();
   ASSERT_TRUE(write_resume_state(name, state).ok());
   EXPECT_THAT(folder.names(), ElementsAre("a.vatrec.state"));

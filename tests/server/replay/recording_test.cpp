@@ -37,7 +37,7 @@ std::string place_of(const Recording& recording) {
   return read.errors()[0].path;
 }
 
-TEST(RecordingFile, ComesBackAsItWas) {
+TEST(RecordingFile, IsReadUnchanged) {
   const Recording recording = make_recording();
   const Result<Recording> read = read_recording(write_recording(recording));
   ASSERT_TRUE(read.ok()) << read.errors()[0].message;

@@ -105,7 +105,7 @@ class LimitedDownloads : public ReplayTest {
   LimitedDownloads() : ReplayTest(limits_with(&ServerLimits::max_download_bytes, kDownloadBytes)) {}
 };
 
-TEST_F(LimitedDownloads, WaitUntilSomebodyFetchesWhatIsThere) {
+TEST_F(LimitedDownloads, WaitForTheFetchOfAnEarlierOne) {
   step(3);
   std::vector<Json> waiting;
   Json reply;
@@ -124,7 +124,7 @@ TEST_F(LimitedDownloads, WaitUntilSomebodyFetchesWhatIsThere) {
   client_->result("recording.export");
 }
 
-TEST_F(ReplayTest, OldDownloadsGoThoughNobodyAsksForAnother) {
+TEST_F(ReplayTest, OldDownloadsEndWithoutNewOnes) {
   Downloads& downloads = server_.downloads();
   ASSERT_TRUE(downloads.add({"old", "content"}, server_.clock().now()));
   const auto held = [&] { return downloads.forget_old({}); };  // nothing has expired at that time

@@ -107,7 +107,7 @@ TEST(ReplaySeeks, RunNoMoreTicksThanLieBetweenTwoCheckpoints) {
   EXPECT_LE(most_ticks(recording, player, core), kMaxTicks);
 }
 
-TEST(ShortenedRecording, HasItsHashesWhereTheSessionWasThen) {
+TEST(ShortenedRecording, HasItsHashesAtTheirPositions) {
   KeptSession session(std::size_t{64} << 20, {50, 200});
   session.shorten(2);
   const Recording recording = session.record();
@@ -120,7 +120,7 @@ TEST(ShortenedRecording, HasItsHashesWhereTheSessionWasThen) {
   }
 }
 
-TEST(ReplaySeeks, GoOnFromWhereTheyAreWhereThatIsNearer) {
+TEST(ReplaySeeks, ContinueFromTheCurrentPositionIfItIsNearer) {
   KeptSession session(std::size_t{64} << 20);
   Recording recording = session.record();
   recording.moments.clear();
@@ -136,7 +136,7 @@ TEST(ReplaySeeks, GoOnFromWhereTheyAreWhereThatIsNearer) {
   EXPECT_EQ(core.run().position(), recording.begin);
 }
 
-TEST(ReplaySeeks, RunNoMoreThanTwoGapsWhereHalfOfThemWereThinned) {
+TEST(ReplaySeeks, RunAtMostTwoGapsAfterThinning) {
   const std::size_t bytes = [] {
     const Recording recording = KeptSession(std::size_t{64} << 20).record();
     std::size_t sum = 0;
@@ -152,7 +152,7 @@ TEST(ReplaySeeks, RunNoMoreThanTwoGapsWhereHalfOfThemWereThinned) {
   EXPECT_LE(most, 2 * kMaxTicks);
 }
 
-TEST(ReplaySeeks, RunNoneWhereMomentsWereFilledIn) {
+TEST(ReplaySeeks, RunNoTicksToFilledMoments) {
   KeptSession session(std::size_t{64} << 20);
   Recording recording = session.record();
   recording.moments.clear();

@@ -14,7 +14,7 @@
 namespace vat::test::replay_session_recording_test {
 namespace {
 
-TEST_F(ReplaySession, ComesBackFromItsFile) {
+TEST_F(ReplaySession, IsRestoredFromItsFile) {
   live();
   const std::string file = exported();
   TestClient carl(server_, 3);
@@ -60,7 +60,7 @@ TEST_F(ReplaySession, RefusesFilesThatAreNoRecordings) {
 
 /// Recordings that no server writes: names that are not UTF-8, and commands that do not belong in a
 /// log.
-TEST_F(ReplaySession, IsNotHarmedByWhatAnybodyMayHaveWritten) {
+TEST_F(ReplaySession, RefusesManipulatedRecordings) {
   live();
   Recording recording = read(exported());
   recording.name = "\xff\xfe";
@@ -108,7 +108,7 @@ TEST_F(ReplaySession, UnpacksNoMoreThanASessionMayBe) {
   }
 }
 
-TEST_F(ReplaySession, ShowsNamesAsTextWhateverTheyAre) {
+TEST_F(ReplaySession, ShowsAnyNameAsText) {
   live();
   Recording recording = read(exported());
   recording.name = std::string(200, 'n');

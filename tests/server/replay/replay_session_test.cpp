@@ -55,7 +55,7 @@ TEST_F(ReplaySession, PlaysToItsEndAndPauses) {
   EXPECT_EQ(bob_->result("control.step", {{"ticks", 5}}).at("tick"), 11);
 }
 
-TEST_F(ReplaySession, TellsThoseWhoWereRecordedFromThoseWhoWatch) {
+TEST_F(ReplaySession, DistinguishesRecordedParticipantsFromViewers) {
   live();
   open();
   EXPECT_EQ(joined_.at("participant"), 1);  // Ann has the same number in the recording
@@ -86,7 +86,7 @@ TEST_F(ReplaySession, TellsThoseWhoWereRecordedFromThoseWhoWatch) {
   EXPECT_EQ(hash(), hashes_.at(first_ + 11));
 }
 
-TEST_F(ReplaySession, IsNotChangedByThoseWhoWatch) {
+TEST_F(ReplaySession, IsNotChangedByViewers) {
   live();
   open();
   seek(first_ + 5);
@@ -129,7 +129,7 @@ TEST_F(ReplaySession, BeginsAnEpochWithEverySeek) {
   }
 }
 
-TEST_F(ReplaySession, TellsOfItsPeopleTenTimesASecondAtMost) {
+TEST_F(ReplaySession, SendsItsPeopleTenTimesASecondAtMost) {
   live();
   open();
   constexpr int kSeeks = 10;
@@ -167,7 +167,7 @@ TEST_F(ReplaySession, ARunIsNotEndedByASceneThatWasRefused) {
   EXPECT_EQ(bob_->result("replay.seek", {{"tick", 13}}).at("position"), position_);
 }
 
-TEST_F(ReplaySession, GoesOnFromAStateThatWasLoaded) {
+TEST_F(ReplaySession, ContinuesFromALoadedState) {
   note();
   step(3);
   ann_->result("session.save", {{"name", "third"}});

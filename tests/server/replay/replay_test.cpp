@@ -71,7 +71,7 @@ TEST_F(ReplayTest, HasAHashOfEveryTick) {
   }
 }
 
-TEST_F(ReplayTest, TellsTheFirstTickThatDiffers) {
+TEST_F(ReplayTest, ReportsTheFirstDifferentTick) {
   live();
   Recording recording = record();
   const auto gravity = std::ranges::find(recording.log, "world.set_gravity", &LogEntry::method);
@@ -100,7 +100,7 @@ std::string fault_of_seek(ReplayPlayer& player, SessionCore& core, std::uint64_t
   }
 }
 
-TEST_F(ReplayTest, RefusesAMomentThatTellsOfAnotherPlace) {
+TEST_F(ReplayTest, RefusesAMomentOfAnotherPosition) {
   live();
   Recording recording = record();
   RecordedMoment& last = recording.moments.back();
@@ -153,7 +153,7 @@ TEST_F(ReplayTest, GoesToNoMomentBeyondTheLimits) {
   }
 }
 
-TEST_F(ReplayTest, TellsNothingThatLetsAnybodyIn) {
+TEST_F(ReplayTest, ContainsNoTokens) {
   live();
   const Recording recording = record();
   ASSERT_FALSE(recording.moments.empty());

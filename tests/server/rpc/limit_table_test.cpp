@@ -64,14 +64,14 @@ const std::vector<Limit>& limit_table() {
       {"name_bytes", nullptr, "NameAndTickLimits.HoldAtTheirValueAndNotBeyond"},
       {"ticks_per_step", nullptr, "NameAndTickLimits.HoldAtTheirValueAndNotBeyond"},
       {"frame_window", nullptr, "Outbox.TakesThreeFramesThatAreNotAcknowledged"},
-      {"frame_groups", nullptr, "FrameDeliveryTest.NobodyWaitsForEverWhereThereAreTooManyGroups"},
+      {"frame_groups", nullptr, "FrameDeliveryTest.EveryViewerHasATurnWithTooManyGroups"},
       {"frame_patience_seconds", "frame_patience_seconds",
-       "Outbox.WhoAcknowledgesNothingIsClosedOnceThePatienceIsOver"},
+       "Outbox.AClientWithoutAcknowledgementsIsClosedAfterThePatience"},
       {"grab_idle_seconds", "grab_idle_seconds", "IdleGrabs.EndAndThoseThatMoveDoNot"},
-      {"presence", nullptr, "Presence.TellsOfAHundredAtMost"},
+      {"presence", nullptr, "Presence.HasAHundredParticipantsAtMost"},
       {"connections_listed", nullptr, "StateConnections.AreAsManyAsWereAskedForAtMost"},
       {"tokens", "max_tokens", "AccessTokens.AreBoundedAndOldOnesMakeRoom"},
-      {"resume_seconds", "resume_seconds", "AwayForAMoment.LeaveAndLetGoOfWhatTheyHeld"},
+      {"resume_seconds", "resume_seconds", "AwayForAMoment.LeaveAndReleaseTheirGrabs"},
       {"handshake_seconds", "handshake_seconds",
        "TransportHostileTest.AHandshakeThatNeverEndsIsCutOff"},
       {"ping_seconds", "ping_seconds", "TransportHostileTest.ASilentPeerIsDropped"},
@@ -143,7 +143,7 @@ TEST(LimitTable, HasEveryLimitOfServerInfo) {
 }
 
 // Sets all settings to different values. server.info must report each in its member.
-TEST(LimitTable, ServerInfoTellsWhatTheSettingsSay) {
+TEST(LimitTable, ServerInfoHasTheValuesOfTheSettings) {
   ServeSettings settings;
   const std::vector<Setting> table = serve_settings(settings);
   std::map<std::string, double> chosen;

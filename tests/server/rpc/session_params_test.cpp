@@ -208,7 +208,7 @@ TEST_F(BadParameters, AreReportedAllAtOnce) {
 
 class GoodParameters : public SessionTest {};
 
-TEST_F(GoodParameters, TheServerSaysWhatItIs) {
+TEST_F(GoodParameters, TheServerDescribesItself) {
   const Json info = client->result("server.info");
   EXPECT_EQ(info.at("name"), "vat");
   EXPECT_EQ(info.at("version"), "1.2.3");

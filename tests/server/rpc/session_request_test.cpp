@@ -79,7 +79,7 @@ TEST_F(Requests, ThatAreWrongAreAnsweredOnceByTheirCodeAndChangeNothing) {
   EXPECT_FALSE(client->connection->close_code().has_value());
 }
 
-TEST_F(Requests, TheIdComesBackAsItWas) {
+TEST_F(Requests, TheIdIsReturnedUnchanged) {
   const std::vector<Json> ids = {
       0, -1, 9007199254740993, "", "a\"\\\u00e4\n", std::string(64, 'x')};
   for (const Json& id : ids) {

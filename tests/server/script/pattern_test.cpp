@@ -121,7 +121,7 @@ TEST(Pattern, ANameCapturesOnceAndComparesAfterThat) {
   EXPECT_EQ(captures.at("$t"), 9);
 }
 
-TEST(Pattern, WhatDoesNotMatchCapturesNothing) {
+TEST(Pattern, AMismatchCapturesNothing) {
   Captures captures;
   EXPECT_TRUE(mismatch(Json::parse(R"(["$t", 1])"), {5, 2}, captures));
   EXPECT_TRUE(captures.empty());

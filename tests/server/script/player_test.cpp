@@ -149,7 +149,7 @@ TEST(Player, FramesBelongToTheLastDescription) {
       HasSubstr("a frame of epoch 1 after the description of epoch 2"));
 }
 
-TEST(Player, WhatMustNotCome) {
+TEST(Player, RefusesForbiddenMessages) {
   EXPECT_EQ(outcome({R"({"expect_none": "frame", "for": 0.01})"}), "");
   EXPECT_THAT(outcome({kSayReply, R"({"expect_none": "reply", "for": 0.01})"}),
               HasSubstr("expected none, came"));

@@ -38,7 +38,7 @@ TEST(WebSocketUrl, IsSecureByItsScheme) {
   EXPECT_EQ(read_websocket_url("wss://example.org:8080/there").authority(), "example.org:8080");
 }
 
-TEST(WebSocketUrl, RefusesWhatIsNone) {
+TEST(WebSocketUrl, RefusesInvalidUrls) {
   for (const char* text : {"", "localhost:80", "http://localhost", "ws://", "wss://", "wss:/h",
                            "ws://:80", "ws:///ws", "ws://h:", "ws://h:x", "ws://h:65536",
                            "ws://h:1e2", "ws://[::1", "ws://[::1]9", "ws://[]:1"}) {

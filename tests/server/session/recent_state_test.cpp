@@ -40,7 +40,7 @@ class RecentState : public SessionRecoveryTest {
   std::string before;
 };
 
-TEST_F(RecentState, IsWhereARecoveryBegins) {
+TEST_F(RecentState, IsTheStartOfARecovery) {
   const std::int64_t newest = Database(data + "/checkpoints.db", Database::Mode::read)
                                   .number("SELECT max(sequence) FROM checkpoints");
   ASSERT_LT(newest, 10);

@@ -26,7 +26,7 @@ TEST_F(SessionDescription, IsTheSameInTheReplyAndInTheEvent) {
   EXPECT_EQ(told.at("bodies").size(), 2U);
 }
 
-TEST_F(SessionDescription, IsStoredOnceForAllWhoJoinInAnEpoch) {
+TEST_F(SessionDescription, IsStoredOnceForAllJoinsOfAnEpoch) {
   const auto first = join();
   const auto second = join();
   ASSERT_FALSE(first->connection->tails().empty());

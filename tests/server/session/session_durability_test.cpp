@@ -120,7 +120,7 @@ TEST_F(SessionDurability, OnAFailingDiskAPlayingSessionTicks) {
   disk.fail({});
 }
 
-TEST_F(SessionDurability, PeopleWhoLeaveOnAFailingDiskAreGoneLater) {
+TEST_F(SessionDurability, LeavesOnAFailingDiskTakeEffectLater) {
   TestClient guest(host->server, 2);
   guest.result("session.join", {{"session", "s1"}, {"name", "Bo"}});
   guest.grab(3);

@@ -77,7 +77,7 @@ TEST_F(SessionLimits, AControlThatIsRefusedChangesNothing) {
   EXPECT_EQ(tick(), steps);
 }
 
-TEST_F(SessionLimits, WhoGoesOnRegardlessIsClosed) {
+TEST_F(SessionLimits, AClientThatContinuesIsClosed) {
   const auto other = join();
   int sent = 0;
   for (; sent < 10'000 && !other->connection->close_code(); ++sent) other->notify("session.hash");
@@ -86,7 +86,7 @@ TEST_F(SessionLimits, WhoGoesOnRegardlessIsClosed) {
   client->result("session.hash");
 }
 
-TEST_F(SessionLimits, AFloodOfWhatIsNoRequestIsOneToo) {
+TEST_F(SessionLimits, AFloodOfInvalidRequestsIsLimited) {
   for (const char* text : {"", "{}", "[]", R"({"jsonrpc":"2.0","method":"no.such"})", "\xff"}) {
     const auto other = connect();
     for (int i = 0; i < 10'000 && !other->connection->close_code(); ++i)

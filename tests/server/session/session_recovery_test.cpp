@@ -93,7 +93,7 @@ TEST_F(SessionRecoveryTest, ALoadedSceneKeepsItsLevel) {
   EXPECT_EQ(described.at("bodies").at(0).at("particles"), 64);
 }
 
-TEST_F(SessionRecoveryTest, GrabsEndWhereNobodyResumesThem) {
+TEST_F(SessionRecoveryTest, GrabsEndWithoutAResume) {
   ServerLimits impatient;
   impatient.resume_time = 0ms;
   begin();
@@ -111,7 +111,7 @@ TEST_F(SessionRecoveryTest, GrabsEndWhereNobodyResumesThem) {
   EXPECT_EQ(life->hash(), free);
 }
 
-TEST_F(SessionRecoveryTest, WhatWasAcceptedIsAcceptedAgainAndWhatWasRefusedIsNot) {
+TEST_F(SessionRecoveryTest, RepeatsAcceptedAndRefusedCommands) {
   ServerLimits few;
   const Simulation alone = Simulation::create(to_scene(mixed_scene_text())).value();
   few.max_particles = alone.particle_count() + 2;  // not enough for a second ball
@@ -213,7 +213,7 @@ TEST_F(SessionRecoveryTest, ADamagedCheckpointIsPassedOver) {
   EXPECT_EQ(life->hash(), before);
 }
 
-TEST_F(SessionRecoveryTest, ASessionThatComesBackInAnotherStateStandsStillAndTellsSo) {
+TEST_F(SessionRecoveryTest, ASessionRestoredInAnotherStateIsPausedAndReported) {
   begin();
   client().result("control.pause");
   client().result("control.step", {{"ticks", 10}});
@@ -238,7 +238,7 @@ TEST_F(SessionRecoveryTest, ASessionThatComesBackInAnotherStateStandsStillAndTel
   EXPECT_TRUE(client().events("session.diverged").empty());
 }
 
-TEST_F(SessionRecoveryTest, ALostSessionStaysInItsFolderAndIsTold) {
+TEST_F(SessionRecoveryTest, ALostSessionStaysInItsFolderAndIsReported) {
   begin();
   client().result("control.pause");
   life.reset();
@@ -268,7 +268,7 @@ TEST_F(SessionRecoveryTest, ALostSessionStaysInItsFolderAndIsTold) {
   EXPECT_EQ(server.recover(), 1U);
 }
 
-TEST_F(SessionRecoveryTest, UntilASessionIsBackTheServerIsNotReadyAndSaysSo) {
+TEST_F(SessionRecoveryTest, DuringARecoveryTheServerReportsThatItIsNotReady) {
   begin();
   client().result("control.pause");
   client().result("control.step", {{"ticks", 1000}});
@@ -300,7 +300,7 @@ TEST_F(SessionRecoveryTest, AClosedSessionStaysAwayAndANewOneGetsAnotherId) {
             "s3");
 }
 
-TEST_F(SessionRecoveryTest, WhoResumesIsWhoTheyWereWithRoleAndGrabs) {
+TEST_F(SessionRecoveryTest, AResumedParticipantHasItsRoleAndGrabs) {
   begin();
   const Json made = client().result("session.create", {{"name", "own"}, {"scene", "mixed"}});
   const Json before =

@@ -77,7 +77,7 @@ TEST_F(SessionThreads, ALoneSessionIsHelped) {
   EXPECT_EQ(client->result("session.hash").at("hash"), expected_hash());
 }
 
-TEST_F(SessionThreads, OnOneThreadNobodyHelps) {
+TEST_F(SessionThreads, OneThreadHasNoHelpers) {
   TestServer server(catalogue, with_threads(1));
   const auto client = start(server);
   client->result("control.step", {{"ticks", 1}});

@@ -15,7 +15,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(SlowTickGate, WhoFindsNoPlaceGetsTheFirstThatIsFree) {
+TEST(SlowTickGate, AWaitingSessionGetsTheFirstFreePlace) {
   SlowTickGate ticks(2);
   std::vector<int> order;
   std::vector<SlowTickGate::Place> given;
@@ -44,7 +44,7 @@ TEST(SlowTickGate, WhoFindsNoPlaceGetsTheFirstThatIsFree) {
   given.clear();
 }
 
-TEST(SlowTickGate, APlaceThatNobodyTakesGoesToTheNext) {
+TEST(SlowTickGate, AnUnusedPlaceGoesToTheNext) {
   SlowTickGate ticks(1);
   SlowTickGate::Place place = ticks.take([](const SlowTickGate::Place&) {});
   bool came = false;

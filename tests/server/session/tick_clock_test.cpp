@@ -101,7 +101,7 @@ TEST(RateMeter, MeasuresSimulatedSecondsPerSecond) {
   EXPECT_TRUE(meter.slower_than(3));
 }
 
-TEST(RateMeter, ForgetsWhatIsLongerAgoThanItsWindow) {
+TEST(RateMeter, ForgetsSamplesOlderThanItsWindow) {
   RateMeter meter;
   Time now = kStart;
   for (int i = 0; i < 200; ++i) meter.tick_done(now += milliseconds(10), 0.02);
@@ -186,7 +186,7 @@ TEST_F(TickProfileTest, LooksAtTheShortestTicksNowAndThen) {
   EXPECT_EQ(looks(1000, 1ns), 10);
 }
 
-TEST_F(TickProfileTest, LooksMoreOftenWhereTicksGrowLonger) {
+TEST_F(TickProfileTest, SamplesMoreOftenDuringLongTicks) {
   looks(50, 1us);
   looks(100, 1ms);  // at least one sample
   EXPECT_EQ(looks(10, 1ms), 10);

@@ -57,7 +57,7 @@ TEST_F(Settings, ALaterSourceCountsMore) {
   EXPECT_EQ(told.at("sources").at("threads"), "default");
 }
 
-TEST_F(Settings, WhatIsPrintedIsAFile) {
+TEST_F(Settings, ThePrintedSettingsAreAFile) {
   target.limits.max_clients_per_session = 77;
   const Json printed = describe(table, sources).at("settings");
   target = {};
@@ -66,11 +66,11 @@ TEST_F(Settings, WhatIsPrintedIsAFile) {
   EXPECT_EQ(describe(table, sources).at("settings"), printed);
 }
 
-TEST_F(Settings, AnUnknownNameIsToldWithTheNearestAndAll) {
+TEST_F(Settings, AnUnknownNameHasASuggestionAndTheList) {
   const Status applied = apply_text(R"({"max_conections": 3, "port": 5})");
   ASSERT_FALSE(applied);
   EXPECT_EQ(applied.errors().front().path, "/max_conections");
-  EXPECT_THAT(applied.errors().front().message, HasSubstr("nearest is max_connections,"));
+  EXPECT_THAT(applied.errors().front().message, HasSubstr("did you mean \"max_connections\"?"));
   EXPECT_THAT(applied.errors().front().message, HasSubstr("port, "));
   EXPECT_EQ(target.port, 8080) << "a file with an error sets nothing";
 }

@@ -54,7 +54,7 @@ class StorageCheckpoints : public testing::Test {
   const std::string path = folder.file("checkpoints.db");
 };
 
-TEST_F(StorageCheckpoints, ComeBackAsTheyWere) {
+TEST_F(StorageCheckpoints, AreReadUnchanged) {
   const Checkpoint written = checkpoint(7, 100, 5000);
   CheckpointStore(path, 1 << 20).write(written);
   CheckpointStore store(path, 1 << 20);
@@ -78,7 +78,7 @@ std::vector<std::uint64_t> hash_positions(CheckpointStore& store, std::uint64_t 
   return positions;
 }
 
-TEST_F(StorageCheckpoints, HaveHashesThatEndWhereTheSessionGoesOn) {
+TEST_F(StorageCheckpoints, HaveHashesUpToTheRestart) {
   {
     CheckpointStore store(path, 1 << 20);
     store.write_hashes(7, std::vector<TickHash>{{1, 3}, {2, 6}, {3, 9}});
@@ -118,7 +118,7 @@ TEST_F(StorageCheckpoints, BeyondTheirBytesTheyAreThinnedEvenly) {
   for (std::size_t i = 1; i < kept.size(); ++i) EXPECT_LE(kept[i] - kept[i - 1], 4U * 64 / 9);
 }
 
-TEST_F(StorageCheckpoints, TheNewestStaysHoweverLargeItIs) {
+TEST_F(StorageCheckpoints, TheNewestIsKeptAtAnySize) {
   CheckpointStore store(path, 100);
   store.write(checkpoint(1, 5, 1000));
   store.write(checkpoint(2, 1, 50));
@@ -136,7 +136,7 @@ TEST_F(StorageCheckpoints, ThoseOfOtherSessionsCanGo) {
   EXPECT_TRUE(store.places(3).empty());
 }
 
-TEST_F(StorageCheckpoints, ADamagedOneIsToldByItsKind) {
+TEST_F(StorageCheckpoints, ADamagedOneIsReportedByItsKind) {
   CheckpointStore store(path, 1 << 20);
   store.write(checkpoint(1, 1, 1000));
   Database database(path, Database::Mode::create);
@@ -169,7 +169,7 @@ TEST(StorageRecorder, TakesStoredStatesAsTheyAre) {
   EXPECT_EQ(recording->moments[0].state, stored);
 }
 
-TEST(StorageCompression, GivesBackTheBytesAndRefusesWhatIsDamagedOrTooLarge) {
+TEST(StorageCompression, RestoresTheBytesAndRefusesDamagedOrLargeOnes) {
   std::vector<std::uint8_t> bytes = noise(3000);
   bytes.resize(10'000);
   std::vector<std::uint8_t> frame = compress(bytes);
@@ -185,7 +185,7 @@ TEST(StorageCompression, GivesBackTheBytesAndRefusesWhatIsDamagedOrTooLarge) {
   EXPECT_TRUE(decompress(compress({}), 0).empty());
 }
 
-TEST_F(StorageCheckpoints, OfAllSessionsAreThinnedWhereTheyAreLargest) {
+TEST_F(StorageCheckpoints, OfAllSessionsAreThinnedFromTheLargest) {
   CheckpointStore store(path, 1 << 20, 30'000);
   store.write(checkpoint(1, 10, 5000));
   store.write(checkpoint(1, 20, 5000));
@@ -272,7 +272,7 @@ TEST(CheckpointPace, DearOnesTakeTheirShareAndNoMore) {
   }
 }
 
-TEST(CheckpointPace, SomeComeWhateverTheyCost) {
+TEST(CheckpointPace, SomeAreWrittenAtAnyCost) {
   const Course course =
       follow(CheckpointPace(Seconds(0.15)), Seconds(0.004), Seconds(5), Seconds(100));
   EXPECT_LE(course.longest, CheckpointPace::kMaxWork + Seconds(0.005));

@@ -53,7 +53,7 @@ class StorageDatabase : public testing::Test {
   const std::string path = folder.file("test.db");
 };
 
-TEST_F(StorageDatabase, OlderOnesAreBroughtUpToDateWithWhatTheyHold) {
+TEST_F(StorageDatabase, OlderOnesAreConvertedWithTheirContent) {
   make_old();
   Database database = open_database(path, {kApplication, kNew}, Durability::process);
   EXPECT_EQ(database.number("PRAGMA user_version"), 2);
@@ -111,7 +111,7 @@ TEST_F(StorageDatabase, AFileThatEndsEarlyIsFound) {
   EXPECT_EQ(refusal(path, {kApplication, kOld}), StorageError::Kind::corrupt);
 }
 
-TEST_F(StorageDatabase, WhatIsNotCommittedLeavesNothing) {
+TEST_F(StorageDatabase, UncommittedChangesAreNotStored) {
   Database database = open_database(path, {kApplication, kOld}, Durability::process);
   {
     Transaction transaction(database);
@@ -124,7 +124,7 @@ TEST_F(StorageDatabase, WhatIsNotCommittedLeavesNothing) {
   EXPECT_EQ(database.number("SELECT count(*) FROM things"), 1);
 }
 
-TEST_F(StorageDatabase, AFullDiskUndoesTheTransactionAndIsToldByItsKind) {
+TEST_F(StorageDatabase, AFullDiskUndoesTheTransactionAndIsReportedByItsKind) {
   Database database = open_database(path, {kApplication, kOld}, Durability::process);
   database.number("PRAGMA max_page_count = 8");
   const std::string long_name(10'000, 'n');
@@ -217,7 +217,7 @@ TEST_F(StorageSessions, ABeatIsAPositionThatWasReached) {
   EXPECT_EQ(store.sessions().at(0).reached, 12U);
 }
 
-TEST_F(StorageSessions, WhatIsClosedStaysAwayAndItsNumberIsNotUsedAgain) {
+TEST_F(StorageSessions, ClosedSessionsAreNotRestoredAndTheirNumbersNotReused) {
   std::uint64_t number = 0;
   {
     SessionStore store(path);
@@ -232,7 +232,7 @@ TEST_F(StorageSessions, WhatIsClosedStaysAwayAndItsNumberIsNotUsedAgain) {
   EXPECT_GT(create(store), number);
 }
 
-TEST_F(StorageSessions, RefusedEntriesAreTold) {
+TEST_F(StorageSessions, RefusedEntriesAreMarked) {
   SessionStore store(path);
   const std::uint64_t number = create(store);
   store.append(number, entry(2, 1));
@@ -271,7 +271,7 @@ TEST_F(StorageSessions, LongLogsAreReadInParts) {
   EXPECT_EQ(sequences(store, other).size(), 1U);
 }
 
-TEST_F(StorageSessions, ATrimmedLogKeepsWhatLaterEntriesBuildOn) {
+TEST_F(StorageSessions, ATrimmedLogKeepsRequiredEntries) {
   SessionStore store(path);
   const std::uint64_t number = create(store);
   const std::uint64_t other = create(store);
@@ -282,7 +282,7 @@ TEST_F(StorageSessions, ATrimmedLogKeepsWhatLaterEntriesBuildOn) {
   EXPECT_EQ(sequences(store, other).size(), 1U);
 }
 
-TEST_F(StorageSessions, EntriesOfOneCallAreWrittenTogetherOrNotAtAll) {
+TEST_F(StorageSessions, EntriesOfOneCallAreWrittenTogether) {
   SessionStore store(path);
   const std::uint64_t number = create(store);
   const std::vector<LogEntry> entries = {entry(2, 1), entry(3, 1),
@@ -332,7 +332,7 @@ std::uint64_t last_sequence(SessionStore& store, std::uint64_t session) {
   }
 }
 
-TEST_F(StorageSessions, WhatWasWrittenSurvivesTheEndOfTheProcessAtAnyMoment) {
+TEST_F(StorageSessions, WrittenEntriesSurviveTheEndOfTheProcess) {
   {
     SessionStore store(path);
     create(store);

@@ -37,7 +37,7 @@ TEST(StorageStates, GoWithTheSessionsThatAreGone) {
   EXPECT_TRUE(states.list("s2").empty());
 }
 
-TEST(StorageScenes, WhoseKeyHasAnotherSizeAreDamaged) {
+TEST(StorageScenes, KeysOfAnotherSizeAreDamaged) {
   const auto main = std::make_shared<MainDatabase>(MainDatabase::kInMemory);
   SavedScenes scenes(main);
   SavedScene scene;
@@ -65,7 +65,7 @@ TEST(StorageFolder, IsOneServersAtATime) {
   const DataFolder third(path);
 }
 
-TEST(StorageFolder, ThatCannotBeMadeIsToldByItsKind) {
+TEST(StorageFolder, ThatCannotBeCreatedIsReportedByItsKind) {
   try {
     const DataFolder folder("/proc/vat");  // not writable, even for root
     ADD_FAILURE() << "the folder was created";
@@ -78,7 +78,7 @@ Checkpoint first_checkpoint(std::uint64_t session) {
   return {session, 1, 2, R"({"playing":true})", std::vector<std::uint8_t>(10, 1)};
 }
 
-TEST(Storage, FreesWhatClosedSessionsTookAndTheirCheckpoints) {
+TEST(Storage, FreesTheSpaceOfClosedSessions) {
   const test::TemporaryFolder folder;
   test::ManualClock clock;
   std::uint64_t kept = 0;
@@ -155,7 +155,7 @@ TEST(Storage, MovesItsLogsEverySecond) {
   EXPECT_EQ(std::filesystem::file_size(log), larger) << "the log is reused from its start";
 }
 
-TEST(Storage, WhatATaskThrowsIsCountedAndTheNextOneRuns) {
+TEST(Storage, AnExceptionIsCountedAndTheNextTaskRuns) {
   const test::TemporaryFolder folder;
   test::ManualClock clock;
   bool ran = false;

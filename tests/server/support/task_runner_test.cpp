@@ -80,7 +80,7 @@ TEST_P(TaskRunnerThreads, SeveralThrowingBlocksGiveOneException) {
 
 // Many runners at once, so that some helpers start late. A helper that missed the stop would never
 // end.
-TEST(TaskRunner, StopsWhereHelpersHaveHardlyBegun) {
+TEST(TaskRunner, StopsDuringTheStartOfHelpers) {
   std::vector<std::thread> owners;
   std::atomic<int> stopped = 0;
   constexpr int kOwners = 6;
@@ -160,7 +160,7 @@ TEST(TaskRunner, TheCallerAndASleepingHelperWorkAtOnce) {
   }
 }
 
-TEST(TaskRunner, ShortRunsWakeNobody) {
+TEST(TaskRunner, ShortRunsWakeNoHelpers) {
   using std::chrono::microseconds;
   const auto is_worth = ThreadPoolRunner::is_worth_waking;
   EXPECT_FALSE(is_worth(microseconds(1), 1, 7));

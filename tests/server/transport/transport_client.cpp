@@ -46,6 +46,8 @@ void RawClient::write(std::string_view bytes) {
 }
 
 std::string RawClient::read_some() {
+  // Asio reports the end of a stream only once: a further read would wait without end.
+  if (has_ended_) return {};
   std::array<char, 65536> buffer;
   std::size_t size = 0;
   await([&](bool& done) {
@@ -54,6 +56,7 @@ std::string RawClient::read_some() {
       done = true;
     });
   });
+  has_ended_ = size == 0;
   return {buffer.data(), size};
 }
 

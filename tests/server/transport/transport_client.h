@@ -43,6 +43,7 @@ class RawClient {
 
   boost::asio::io_context io_;
   boost::asio::ip::tcp::socket socket_;
+  bool has_ended_ = false;  // the peer sends no more bytes
 };
 
 struct HttpReply {

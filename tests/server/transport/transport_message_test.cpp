@@ -139,7 +139,7 @@ TEST_F(TransportMessageTest, TheSystemTakesLittleForAPeerThatDoesNotRead) {
   EXPECT_LE(little, std::size_t{1024} * 1024);
 }
 
-TEST_F(TransportMessageTest, BytesQueuedForAPeerThatVanishesAreLetGo) {
+TEST_F(TransportMessageTest, BytesQueuedForALostPeerAreFreed) {
   start();
   WsClient client(port);
   const auto connection = only_connection();

@@ -30,7 +30,7 @@ class TransportStopTest : public TransportTest {
   }
 };
 
-TEST_F(TransportStopTest, TellsEveryClient) {
+TEST_F(TransportStopTest, NotifiesEveryClient) {
   start();
   std::vector<std::unique_ptr<WsClient>> clients;
   std::atomic<int> told = 0;
@@ -130,7 +130,7 @@ std::string error_of_start(Transport& transport) {
   return "no error";
 }
 
-TEST_F(TransportStopTest, AnAddressOfNobodyIsAnErrorThatNamesIt) {
+TEST_F(TransportStopTest, AForeignAddressIsAnErrorThatNamesIt) {
   settings.host = "192.0.2.1";  // reserved for documentation, RFC 5737
   EXPECT_EQ(error_of_start(*make_websocket_transport(settings, recorder, http_handler)),
             "cannot listen on 192.0.2.1:0: Cannot assign requested address");
@@ -266,7 +266,7 @@ TEST_F(TransportSocketsTest, ManyMayWaitToBeAccepted) {
 }
 
 // A slow handler delays the clients that connect meanwhile, but does not close their connections.
-TEST_F(TransportSocketsTest, WhoComesWhileAHandlerIsSlowIsServed) {
+TEST_F(TransportSocketsTest, ANewConnectionIsServedDuringASlowHandler) {
   SlowHandler handler;
   http_handler = [&](const HttpRequest&) { return handler(); };
   recorder.echo = true;

@@ -129,7 +129,7 @@ TEST_F(TransportTlsTest, CarriesWebSockets) {
   EXPECT_EQ(client.read(4).substr(2, 2), "\x03\xe9") << "1001";
 }
 
-TEST_F(TransportTlsTest, RefusesWhatIsOlderThan12) {
+TEST_F(TransportTlsTest, RefusesVersionsBefore12) {
   start();
   for (const int version : {TLS1_VERSION, TLS1_1_VERSION}) {
     EXPECT_FALSE(TlsClient(port, version).is_open()) << version;

@@ -53,7 +53,7 @@ TEST(RandomScenes, KeepTheirProperties) {
 }
 
 // A scene fails as long as it has a rigid body that moves.
-TEST(Shrinking, LeavesWhatMakesASceneFail) {
+TEST(Shrinking, KeepsTheCauseOfAFailure) {
   Scene scene = make_tank();
   scene.vat->motion = SlideMotion{Vec3::UnitX(), 0.1, 1};
   for (int b = 0; b < 4; ++b) {
