@@ -5,6 +5,9 @@ import { defineConfig } from 'vitest/config';
 const web = resolve(fileURLToPath(import.meta.url), '..');
 const repository = resolve(web, '..');
 
+/** A file waits for events, drawing and physics in turn, so that two files fill two processors. */
+const kProcesses = 2;
+
 export default defineConfig({
   root: repository,
   server: { fs: { allow: [repository] } },
@@ -19,10 +22,9 @@ export default defineConfig({
   test: {
     include: ['tests/browser/**/*.test.ts'],
     globalSetup: 'tests/browser/support/setup.ts',
-    // One process for all files in sequence: they share a browser, and loading takes long.
-    fileParallelism: false,
+    // Few processes, each for many files: they share a browser, and loading takes long.
     pool: 'forks',
-    poolOptions: { forks: { singleFork: true, isolate: false } },
+    poolOptions: { forks: { minForks: kProcesses, maxForks: kProcesses, isolate: false } },
     testTimeout: 180_000,
     hookTimeout: 180_000,
   },

@@ -62,6 +62,7 @@ void FrameDelivery::set_vat(const std::optional<Vat>& vat) {
 
 void FrameDelivery::publish(PublishedState& state, SteadyClock::time_point now) {
   encoded_.clear();
+  rest_.clear();
   note_turns(state);
   least_detail_ = least_detail(particle_count(state));
   source_.publish(state);
@@ -84,6 +85,11 @@ void FrameDelivery::retry(std::span<const ConnectionId> clients, SteadyClock::ti
   serve(groups, now);
 }
 
+void FrameDelivery::serve_rest(SteadyClock::time_point now) {
+  encoded_.clear();
+  retry(std::exchange(rest_, {}), now);
+}
+
 void FrameDelivery::note_turns(const PublishedState& state) {
   const bool is_new_epoch = !has_state_ || state.header.epoch != epoch_;
   for (auto& [client, viewer] : viewers_) {
@@ -93,6 +99,7 @@ void FrameDelivery::note_turns(const PublishedState& state) {
   }
   has_state_ = true;
   epoch_ = state.header.epoch;
+  is_playing_ = state.header.playing;
   tick_ = state.header.tick;
 }
 
@@ -159,7 +166,10 @@ void FrameDelivery::serve(const Groups& groups, SteadyClock::time_point now) {
   }
   for (std::size_t index = 0; index < entries.size(); ++index) {
     if (is_served[index]) continue;
-    for (Viewer* viewer : entries[index]->second) ++viewer->passed_over;
+    for (Viewer* viewer : entries[index]->second) {
+      ++viewer->passed_over;
+      if (!is_playing_) rest_.push_back(viewer->outbox->id());
+    }
     metrics_.add_missed_frames(entries[index]->second.size());
   }
 }

@@ -16,7 +16,8 @@ namespace vat {
 /// Distributor of a session's frames to the viewers. A viewer that is not ready for a due frame
 /// receives a newer frame as soon as it is ready. Viewers with equal selections and reference
 /// frames form a group and share one encoding. At most kMaxFrameGroups groups are encoded per
-/// state. The viewers of the other groups receive the next state. Not thread-safe.
+/// state. The viewers of the other groups receive the next state. A paused session may have no next
+/// state, and serve_rest() serves them. Not thread-safe.
 class FrameDelivery {
  public:
   FrameDelivery(const std::optional<Vat>& vat, ServerMetrics& metrics);
@@ -40,6 +41,10 @@ class FrameDelivery {
   void publish(PublishedState& state, SteadyClock::time_point now);
   /// Sends the last state to clients that may have become ready.
   void retry(std::span<const ConnectionId> clients, SteadyClock::time_point now);
+  /// Whether viewers of a paused session wait for the last state only because of kMaxFrameGroups.
+  bool has_rest() const { return !rest_.empty(); }
+  /// Encodes the last state for at most kMaxFrameGroups of the groups that has_rest() reports.
+  void serve_rest(SteadyClock::time_point now);
 
  private:
   struct Viewer {
@@ -88,7 +93,9 @@ class FrameDelivery {
   std::map<GroupKey, EncodedFrame> encoded_;  // frames of the last state
   double default_error_ = 0;
   std::uint8_t least_detail_ = kFullDetail;
+  std::vector<ConnectionId> rest_;  // see has_rest()
   bool has_state_ = false;
+  bool is_playing_ = false;  // in the last state
   std::uint64_t tick_ = 0;   // tick of the last state
   std::uint32_t epoch_ = 0;  // epoch of the last state
 };

@@ -92,6 +92,7 @@ void FrameFeed::turn() {
   active_changes_.changes.clear();
   active_changes_.has_state = false;
   active_changes_.woken.clear();
+  active_changes_.serves_rest = false;
 }
 
 void FrameFeed::apply_pending_changes() {
@@ -109,11 +110,16 @@ void FrameFeed::apply_pending_changes() {
       delivery_.set_vat(std::get<std::optional<Vat>>(change));
     }
   }
-  if (active_changes_.has_state) {
-    delivery_.publish(active_changes_.state, clock_.now());
-  } else {
-    delivery_.retry(active_changes_.woken, clock_.now());
-  }
+  send_frames();
+  // In another turn, so that a newer state comes first.
+  if (delivery_.has_rest()) put([&] { pending_.serves_rest = true; });
+}
+
+void FrameFeed::send_frames() {
+  const SteadyClock::time_point now = clock_.now();
+  if (active_changes_.has_state) return delivery_.publish(active_changes_.state, now);
+  if (active_changes_.serves_rest) delivery_.serve_rest(now);
+  delivery_.retry(active_changes_.woken, now);
 }
 
 }  // namespace vat

@@ -60,11 +60,13 @@ class FrameFeed final : public FrameWaker, public std::enable_shared_from_this<F
     PublishedState state;
     bool has_state = false;  // if false, `state` is only reusable memory
     std::vector<ConnectionId> woken;
+    bool serves_rest = false;  // see FrameDelivery::serve_rest()
   };
   template <class Put>
   void put(Put&& put);
   void turn();
   void apply_pending_changes();
+  void send_frames();
 
   const std::string session_;
   const Clock& clock_;

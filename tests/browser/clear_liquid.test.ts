@@ -86,6 +86,7 @@ async function show(scene: Scene, ticks: number, view: string): Promise<void> {
   }
   await visits.viewer.untilScene(scene.name!);
   await visits.viewer.untilTick(ticks, ticks);
+  await visits.untilWhole();
 }
 
 /** Moves the camera to the preset of a key, and waits until it has arrived. */

@@ -28,7 +28,8 @@ async function serve(...flags: string[]): Promise<void> {
 }
 
 async function open(url = server.url, look: Look = {}): Promise<Viewer> {
-  const page = await openPage(url, { deviceScaleFactor: 0.5, ...look });
+  // A small picture, because drawing is not the subject.
+  const page = await openPage(url, { deviceScaleFactor: 0.1, ...look });
   page.serverIsAway = true; // refusals appear on the browser's console
   pages.push(page);
   return page;

@@ -8,8 +8,11 @@ const visits = new Visits();
 const kMostPasses = 12;
 const kMostCalls = 40;
 
-/** Animation frames without a draw call, which show that nothing is drawn. */
-const kFrames = 90;
+/**
+ * Animation frames without a draw call, which show that nothing is drawn: more than half a second,
+ * the period of the session's status.
+ */
+const kFrames = 40;
 
 declare global {
   interface Window {

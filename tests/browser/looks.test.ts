@@ -1,6 +1,6 @@
 import { beforeEach, describe, expect, it } from 'vitest';
 import { differenceFromReference, pixelsOf, statisticsOf } from './support/pixels';
-import type { Region } from './support/pixels';
+import type { Pixels, Region } from './support/pixels';
 import type { Look } from './support/viewer';
 import { kInTime, Visits } from './support/visits';
 
@@ -79,10 +79,14 @@ describe('the dam break at its start', () => {
     expect(await visits.viewer.said('liquid')).toBe(style);
     for (const colorScheme of ['dark', 'light'] as const) {
       await visits.viewer.page.emulateMedia({ colorScheme });
-      const isLight = async (): Promise<boolean> => (await statistics(kAir)).green > 127;
+      let pixels: Pixels | undefined;
+      const isLight = async (): Promise<boolean> => {
+        pixels = await pixelsOf(visits.viewer);
+        return statisticsOf(pixels, kAir).green > 127;
+      };
       await expect.poll(isLight, kInTime).toBe(colorScheme === 'light');
-      const water = await statistics(kWater);
-      const air = await statistics(kAir);
+      const water = statisticsOf(pixels!, kWater);
+      const air = statisticsOf(pixels!, kAir);
       expect(water.blue - water.red, colorScheme).toBeGreaterThan(50);
       expect(Math.abs(air.blue - air.red), colorScheme).toBeLessThan(25);
     }
@@ -137,9 +141,13 @@ describe('the dam break in motion', () => {
     expect(await most()).toBeLessThan(high);
     // Liquid deep in the column of water, and at its surface, where the pressure is zero. Larger
     // values are greener.
-    const deeper = async (): Promise<number> =>
-      (await statistics({ left: 0.27, top: 0.62, right: 0.34, bottom: 0.7 })).green -
-      (await statistics({ left: 0.14, top: 0.36, right: 0.2, bottom: 0.38 })).green;
+    const deeper = async (): Promise<number> => {
+      const pixels = await pixelsOf(visits.viewer);
+      return (
+        statisticsOf(pixels, { left: 0.27, top: 0.62, right: 0.34, bottom: 0.7 }).green -
+        statisticsOf(pixels, { left: 0.14, top: 0.36, right: 0.2, bottom: 0.38 }).green
+      );
+    };
     await expect.poll(deeper, kInTime).toBeGreaterThan(30);
   });
 

@@ -67,10 +67,13 @@ async function compose(rows: { name: string; pictures: string[] }[]): Promise<st
   return canvas.toDataURL('image/jpeg', 0.9);
 }
 
+/** Computes without pictures, which would delay the steps. */
 async function advance(observer: Observer, ticks: number): Promise<void> {
+  await viewer.brake(true);
   for (let left = ticks; left > 0; left -= kStep) {
     await observer.request('control.step', { ticks: Math.min(kStep, left) });
   }
+  await viewer.brake(false);
 }
 
 /** npm runs this in web/; relative paths refer to the folder of the command. */

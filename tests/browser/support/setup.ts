@@ -9,23 +9,33 @@ declare module 'vitest' {
   interface ProvidedContext {
     /** Endpoint of the Chromium process that all files share. */
     chromium: string;
-    /** Page of the server that most files share. */
-    server: string;
+    /** For each process, the page of the server that most of its files share. */
+    servers: string[];
   }
 }
 
 const kPage = fileURLToPath(new URL('../../../web/dist/index.html', import.meta.url));
 
 /** Starts the browser and the server of the whole suite. Returns the function that ends both. */
-export default async function start({ provide }: TestProject): Promise<() => Promise<void>> {
+export default async function start({
+  config,
+  provide,
+}: TestProject): Promise<() => Promise<void>> {
   if (!existsSync(kPage)) throw new Error(`no ${kPage}: type npm --prefix web run build`);
-  const server = new Server(['--max-scenes-per-second', '1000']);
-  await server.start();
+  const { maxForks = 1 } = config.poolOptions?.forks ?? {};
+  const servers = Array.from(
+    { length: Number(maxForks) },
+    () => new Server(['--max-scenes-per-second', '1000']),
+  );
+  await Promise.all(servers.map((server) => server.start()));
   const browser = await chromium.launchServer(launchOptions());
   provide('chromium', browser.wsEndpoint());
-  provide('server', server.url);
+  provide(
+    'servers',
+    servers.map(({ url }) => url),
+  );
   return async () => {
     await browser.close();
-    await server.kill();
+    await Promise.all(servers.map((server) => server.kill()));
   };
 }

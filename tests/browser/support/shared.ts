@@ -13,9 +13,9 @@ export function sharedBrowser(): Promise<Browser> {
   return browser;
 }
 
-/** The server of the whole suite. Tests do not end it. */
+/** The server of this process. Tests do not end it. */
 export const sharedServer: Host = {
-  url: inject('server'),
+  url: inject('servers')[Number(process.env.VITEST_POOL_ID) - 1]!,
   start: () => Promise.resolve(),
   kill: () => Promise.resolve(),
 };

@@ -21,6 +21,9 @@ const kCoarse: Look = { deviceScaleFactor: 0.5 };
 /** The scene between two visits, so that the page restarts with the next. */
 const kNothing: Scene = { format: 'vat.scene/1', name: 'nothing', materials: [], bodies: [] };
 
+/** The page of the last file, which the next file uses if it needs the same kind of device. */
+let spare: { page: Viewer; device: string } | undefined;
+
 type Visit = Look & {
   tick?: number;
   /** Settings of the view, in the form of links. */
@@ -30,7 +33,8 @@ type Visit = Look & {
 /**
  * A server for the tests of a file, a second client in its first session, and one page. `visit`
  * loads scenes in the page. The page is replaced if a visit needs another kind of device, and after
- * a failed test. A test fails if the page had a problem.
+ * a failed test. Files with the shared server also share the page. A test fails if the page had a
+ * problem.
  */
 export class Visits {
   private client: Observer | undefined;
@@ -49,7 +53,7 @@ export class Visits {
       expect(problems).toEqual([]);
     });
     afterAll(async () => {
-      await this.leave();
+      await this.handOver();
       this.client?.leave();
       await server.kill();
     });
@@ -83,6 +87,12 @@ export class Visits {
     if (tick > 0) await observer.request('control.step', { ticks: tick });
     await this.viewer.untilScene(scene);
     await this.viewer.untilTick(tick, tick);
+    await this.untilWhole();
+  }
+
+  /** Waits for full detail, which a slow page requests while the session is paused. */
+  async untilWhole(): Promise<void> {
+    await this.viewer.until('#connection[data-slow="false"]');
   }
 
   /** Sets these view settings and resets the others to their defaults. */
@@ -97,12 +107,29 @@ export class Visits {
 
   private async open({ colorScheme = 'light', ...look }: Look): Promise<void> {
     const device = { ...kCoarse, ...look };
-    if (!this.page || this.device !== JSON.stringify(device)) {
+    const name = JSON.stringify({ ...device, before: String(look.before) });
+    if (!this.page && this.server === sharedServer) await this.takeOver(name);
+    if (!this.page || this.device !== name) {
       await this.leave();
-      this.device = JSON.stringify(device);
+      this.device = name;
       this.page = await openPage(this.server.url, device);
     }
     await this.page.page.emulateMedia({ colorScheme });
+  }
+
+  /** Uses the spare page if it is of this kind. Otherwise closes it, because it would draw too. */
+  private async takeOver(device: string): Promise<void> {
+    if (spare?.device === device) this.page = spare.page;
+    else await spare?.page.close();
+    this.device = device;
+    spare = undefined;
+  }
+
+  private async handOver(): Promise<void> {
+    if (!this.page || this.server !== sharedServer) return this.leave();
+    await this.observer.request('control.pause', {});
+    spare = { page: this.page, device: this.device };
+    this.page = undefined;
   }
 
   private async leave(): Promise<void> {

@@ -1,5 +1,6 @@
 #include "server/frames/frame_delivery.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <map>
@@ -249,6 +250,25 @@ TEST_F(FrameDeliveryTest, EveryViewerHasATurnWithTooManyGroups) {
     EXPECT_GE(last + kGroups / (kMaxFrameGroups / 2), kTicks);
   }
   EXPECT_TRUE(counted("vat_frames_encoded_total " + std::to_string(kTicks * kMaxFrameGroups)));
+}
+
+// No newer state comes for them.
+TEST_F(FrameDeliveryTest, APausedSessionServesEveryGroup) {
+  std::vector<TestViewer> viewers;
+  for (std::size_t i = 0; i < 2 * kMaxFrameGroups + 1; ++i) {
+    Subscription wish;
+    wish.max_error = 1e-4 * static_cast<double>(i + 1);
+    viewers.push_back(add(wish));
+  }
+  publish(1, 0.1);
+  EXPECT_FALSE(delivery.has_rest()) << "the next state serves them";
+  publish(2, 0.9, false);
+  for (int turns = 1; delivery.has_rest(); ++turns) {
+    ASSERT_LE(turns, 2);
+    delivery.serve_rest(now);
+  }
+  for (const TestViewer& viewer : viewers) EXPECT_THAT(viewer.ticks(), testing::Contains(2U));
+  EXPECT_TRUE(counted("vat_frames_encoded_total " + std::to_string(3 * kMaxFrameGroups + 1)));
 }
 
 TEST_F(FrameDeliveryTest, SlowViewersShareTheFramesOfALowerRate) {

@@ -8,6 +8,7 @@
 
 #include "protocol/scene/scene_json.h"
 #include "server/frames/frame_feed.h"
+#include "server/messages/limits.h"
 #include "server/session/core/session_core.h"
 #include "tests/server/fixture/fake_connection.h"
 #include "tests/server/fixture/session_fixture.h"
@@ -105,6 +106,20 @@ TEST_F(SessionFrames, NothingIsEncodedWithoutSubscribers) {
   client->result("frames.subscribe");
   client->wait_frame([](const GridFrame&) { return true; });
   EXPECT_NE(server.metrics().find("\nvat_frames_encoded_total 1\n"), std::string::npos);
+}
+
+// More clients with different frames than the server encodes for one state.
+TEST_F(SessionFrames, APausedSessionServesEveryClient) {
+  std::vector<std::unique_ptr<TestClient>> clients;
+  for (std::size_t i = 0; i < kMaxFrameGroups + 2; ++i) {
+    clients.push_back(join());
+    clients.back()->result("frames.subscribe", {{"max_error", 1e-5 * static_cast<double>(i + 1)}});
+    clients.back()->wait_frame([](const GridFrame&) { return true; });
+  }
+  client->result("control.step");
+  for (const auto& one : clients) {
+    one->wait_frame([](const GridFrame& frame) { return frame.header.tick == 1; });
+  }
 }
 
 TEST_F(SessionFrames, AnUnsubscribedClientGetsNone) {

@@ -61,6 +61,17 @@ describe('JoinedColumns', () => {
     }
   });
 
+  it('releases buffers that are too small', () => {
+    let releases = 0;
+    joined.geometry.addEventListener('dispose', () => ++releases);
+    const body = bodyOf(1, [10]);
+    joined.update([body]);
+    const before = releases;
+    show(body.columns, [1, 2, 3, 4, 5, 6, 7]);
+    joined.update([body]);
+    expect(releases).toBe(before + 1);
+  });
+
   it('copies columns after changes only', () => {
     const bodies = [bodyOf(1, [10]), bodyOf(2, [30])];
     expect(joined.update(bodies)).toBe(true);
@@ -110,5 +121,27 @@ describe('LiquidDrawing', () => {
     expect(visible ? children.filter((mesh) => mesh.visible).length : 0).toBe(count);
     drawing.update([], time);
     expect(drawing.group.visible).toBe(false);
+  });
+
+  it('marks isolated particles also if the style changes while no frame comes', () => {
+    const drawing = new LiquidDrawing(shared);
+    const body = bodyOf(1, [1, 2, 3, 1000]);
+    const update = (): void => {
+      const { row, columns } = body;
+      const liquid = { body: 1, row, columns, valueQuantum: 1, radius: 1 };
+      drawing.update([liquid], { quantum: 1, seconds: 0.02, height: 1 });
+    };
+    const froth = (): BufferAttribute =>
+      (drawing.group.children[0] as Mesh).geometry.getAttribute('froth') as BufferAttribute;
+    update();
+    expect(froth().getY(3)).toBe(0);
+    const { version } = froth();
+    drawing.style = 'fluid';
+    update();
+    expect(froth().getY(3)).toBeGreaterThan(0.5);
+    expect(froth().getY(1)).toBeLessThan(froth().getY(3));
+    expect(froth().version).toBe(version + 1); // uploaded once
+    update();
+    expect(froth().version).toBe(version + 1);
   });
 });

@@ -1,7 +1,7 @@
-import { Box3, Vector3 } from 'three';
+import { Box3, PerspectiveCamera, Vector3 } from 'three';
 import { describe, expect, it } from 'vitest';
-import { framedBox } from '../../../web/viewer/view/base/framed';
-import { nearestEye } from '../../../web/viewer/view/base/fit';
+import { framedBox, Framing } from '../../../web/viewer/view/base/framed';
+import { fitBox, nearestEye } from '../../../web/viewer/view/base/fit';
 import type { Seen } from '../../../web/viewer/view/base/fit';
 import { directionOf, firstDirection } from '../../../web/viewer/view/base/presets';
 
@@ -67,6 +67,24 @@ describe('firstDirection', () => {
   });
 });
 
+describe('the first view of a long scene', () => {
+  it('is along it, so that its near end is larger', () => {
+    const box = new Box3(new Vector3(), new Vector3(9, 0.1, 1));
+    const from = firstDirection(box);
+    const camera = new PerspectiveCamera(32, 16 / 9);
+    camera.up.set(0, 0, 1);
+    const { target, distance } = fitBox(box, from, camera, 1);
+    const eye = target.addScaledVector(from, distance);
+    expect(2 * eye.distanceTo(box.min)).toBeLessThan(eye.distanceTo(box.max));
+  });
+
+  it('is from the right if it is high or deep', () => {
+    for (const size of [new Vector3(9, 0.1, 3), new Vector3(9, 3, 0.1)]) {
+      expect(firstDirection(new Box3(new Vector3(), size)).x).toBeGreaterThan(0);
+    }
+  });
+});
+
 describe('framedBox', () => {
   const boxOf = (
     ...[x, y, z, toX, toY, toZ]: [number, number, number, number, number, number]
@@ -83,5 +101,33 @@ describe('framedBox', () => {
       ...expected.min,
       ...expected.max,
     ]);
+  });
+});
+
+describe('Framing', () => {
+  const box = new Box3(new Vector3(), new Vector3(1, 1, 1));
+  const larger = new Box3(new Vector3(), new Vector3(2, 2, 2));
+
+  it('follows the box until the camera is moved', () => {
+    const framing = new Framing();
+    expect(framing.follow(new Box3())).toBe(false);
+    expect(framing.box).toBeUndefined();
+    expect([framing.follow(box), framing.follow(box), framing.follow(larger)]).toEqual([
+      true,
+      false,
+      true,
+    ]);
+    framing.end();
+    expect(framing.follow(box)).toBe(false);
+    expect(framing.box).toBeUndefined();
+  });
+
+  it('frames a new scene whose first frame comes after a movement of the camera', () => {
+    const framing = new Framing();
+    framing.follow(box);
+    framing.begin();
+    framing.end(); // the orbit turns the camera before the first frame
+    expect(framing.follow(larger)).toBe(true);
+    expect(framing.box).toEqual(larger);
   });
 });

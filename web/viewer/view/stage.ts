@@ -5,6 +5,7 @@ import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 import { firstDirection } from './base/presets';
 import { isCalm } from './base/calm';
 import { fitBox } from './base/fit';
+import { Framing } from './base/framed';
 import type { Pose } from './base/pose';
 import { FluidPass, kMostRows } from './fluid/fluid_pass';
 import type { FluidLook } from './fluid/fluid_pass';
@@ -57,8 +58,8 @@ export class Stage {
   /** Called when the user begins to move the camera. */
   onMoved: () => void = () => undefined;
   private firstMargin = kFirstMargin;
-  /** The box in the initial view; undefined after the camera was moved. */
-  private framed: Box3 | undefined = new Box3();
+  /** The box in the initial view. */
+  private readonly framing = new Framing();
   /** The box of the scene. */
   private readonly bounds = new Box3();
 
@@ -84,7 +85,7 @@ export class Stage {
     this.controls.maxPolarAngle = 0.495 * Math.PI; // the camera stays above the floor
     this.controls.addEventListener('change', () => this.invalidate());
     this.controls.addEventListener('start', () => {
-      this.framed = undefined;
+      this.framing.end();
       this.onMoved();
     });
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement ?? canvas);
@@ -154,15 +155,13 @@ export class Stage {
 
   /** Returns to the initial view of the next box of `follow`. */
   reframe(): void {
-    this.framed = new Box3();
+    this.framing.begin();
   }
 
   /** Keeps the whole box in view until the camera is moved. */
   follow(box: Box3): void {
     this.bounds.copy(box);
-    if (!this.framed || box.isEmpty() || box.equals(this.framed)) return;
-    this.framed.copy(box);
-    this.showFramed();
+    if (this.framing.follow(box)) this.showFramed();
   }
 
   /** Returns the ray from the eye through a point of the window. */
@@ -188,7 +187,7 @@ export class Stage {
   }
 
   set pose({ eye, target }: Pose) {
-    this.framed = undefined;
+    this.framing.end();
     this.camera.position.copy(eye);
     this.controls.target.copy(target);
     this.controls.update();
@@ -211,9 +210,10 @@ export class Stage {
   }
 
   private showFramed(): void {
-    if (!this.framed || this.framed.isEmpty()) return;
-    const from = firstDirection(this.framed);
-    const { target, distance } = fitBox(this.framed, from, this.camera, this.firstMargin);
+    const { box } = this.framing;
+    if (!box) return;
+    const from = firstDirection(box);
+    const { target, distance } = fitBox(box, from, this.camera, this.firstMargin);
     this.camera.position.copy(target).addScaledVector(from, distance);
     this.camera.near = distance / 100;
     this.camera.far = distance * 20;

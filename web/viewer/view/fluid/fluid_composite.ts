@@ -35,12 +35,16 @@ const kSurface = /* glsl */ `
     return away * ray_at((vec2(place) + 0.5) / vec2(textureSize(depth, 0)));
   }
 
-  /** Returns the slope along one direction, from the side with the smaller step. */
+  /**
+   * Returns the slope along one direction, from the side with the smaller step. A larger step than
+   * a particle on both sides is an outline, which has no slope.
+   */
   vec3 slope(ivec2 here, ivec2 aside, vec3 point) {
     float ahead = surface_at(here + aside).r;
     float back = surface_at(here - aside).r;
     bool takes_back = ahead <= 0.0 || (back > 0.0 && abs(back + point.z) < abs(ahead + point.z));
-    if (takes_back && back <= 0.0) return vec3(aside, 0.0);
+    float step = takes_back ? back : ahead;
+    if (step <= 0.0 || abs(step + point.z) > 2.0 * radius) return vec3(aside, 0.0);
     return takes_back ? point - point_at(here - aside, back) : point_at(here + aside, ahead) - point;
   }
 
@@ -89,7 +93,7 @@ const kLight = /* glsl */ `
     vec3 around = environment(bounced, 0.05);
     float shine = pow(max(dot(bounced, ${kSun}), 0.0), 250.0);
     vec3 light = mix(body, around, mirror) + 1.6 * shine * shade * (1.0 - 0.6 * paint);
-    vec3 white = vec3(0.93, 0.96, 0.98) * (0.45 + 0.25 * sky + 0.35 * toward);
+    vec3 white = vec3(0.93, 0.96, 0.98) * (0.62 + 0.2 * sky + 0.22 * toward);
     return mix(light, white, foam * (1.0 - paint));
   }
 

@@ -7,8 +7,8 @@ const kDepth = /* glsl */ `
     if (inside <= 0.0) discard;
     vec3 point = (along - extent * sqrt(inside)) * ray;
     gl_FragDepth = depth_of(point);
-    // The blur of the outline removes no isolated drops.
-    nearest = vec4(-point.z, 1.0 + lone, foam, 0.0);
+    // The blur of the outline removes no isolated drops. They are white, as spray.
+    nearest = vec4(-point.z, 1.0 + lone, max(foam, 0.6 * lone), 0.0);
   }
 `;
 

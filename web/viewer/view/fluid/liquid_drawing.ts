@@ -19,6 +19,8 @@ export class LiquidDrawing {
   private readonly uniforms;
   private readonly meshes: { mesh: Mesh; style: LiquidStyle }[] = [];
   private drawn: LiquidStyle = 'splats';
+  /** Whether the foam is that of the present columns. Only the style fluid needs it. */
+  private hasFroth = false;
 
   constructor({ look, behind }: { look: LookUniforms; behind: BehindUniforms }) {
     const uniforms = (this.uniforms = bodyUniforms(new Color(), look, true));
@@ -39,9 +41,15 @@ export class LiquidDrawing {
   update(liquids: readonly LiquidBody[], time: LiquidTime): void {
     const { drawn, joined } = this;
     this.group.visible = liquids.length > 0 && (drawn === 'fluid' || drawn === 'splats');
-    if (!this.group.visible || !joined.update(liquids)) return;
-    this.uniforms.value_quantum.value = liquids[0]!.valueQuantum;
-    if (drawn === 'fluid') this.froth.follow(liquids, joined, time);
+    if (!this.group.visible) return;
+    if (joined.update(liquids)) {
+      this.uniforms.value_quantum.value = liquids[0]!.valueQuantum;
+      this.hasFroth = false;
+    }
+    if (drawn !== 'fluid' || this.hasFroth) return;
+    this.froth.follow(liquids, joined, time);
+    joined.geometry.getAttribute('froth').needsUpdate = true;
+    this.hasFroth = true;
   }
 
   /** Forgets the foam, before another scene. */
