@@ -5,9 +5,6 @@ import { defineConfig } from 'vitest/config';
 const web = resolve(fileURLToPath(import.meta.url), '..');
 const repository = resolve(web, '..');
 
-/** A file waits for events, drawing and physics in turn, so that two files fill two processors. */
-const kProcesses = 2;
-
 export default defineConfig({
   root: repository,
   server: { fs: { allow: [repository] } },
@@ -22,9 +19,11 @@ export default defineConfig({
   test: {
     include: ['tests/browser/**/*.test.ts'],
     globalSetup: 'tests/browser/support/setup.ts',
-    // Few processes, each for many files: they share a browser, and loading takes long.
+    // One process for all files in sequence: they share a browser, and loading takes long. With two,
+    // frames are late, and pictures differ.
+    fileParallelism: false,
     pool: 'forks',
-    poolOptions: { forks: { minForks: kProcesses, maxForks: kProcesses, isolate: false } },
+    poolOptions: { forks: { singleFork: true, isolate: false } },
     testTimeout: 180_000,
     hookTimeout: 180_000,
   },

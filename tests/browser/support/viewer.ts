@@ -4,9 +4,9 @@ import type {
   ConsoleMessage,
   Page,
   Request,
-} from "playwright-core";
-import { kDeadlineMs, launchChromium } from "./chromium";
-import { recordPage } from "./transcript";
+} from 'playwright-core';
+import { kDeadlineMs, launchChromium } from './chromium';
+import { recordPage } from './transcript';
 
 /** Smaller differences of a colour channel may result from rounding. */
 const kSeenStep = 12;
@@ -14,7 +14,7 @@ const kSeenStep = 12;
 /** Display settings of the browser. */
 export type Look = Pick<
   BrowserContextOptions,
-  "viewport" | "colorScheme" | "hasTouch" | "isMobile" | "deviceScaleFactor"
+  'viewport' | 'colorScheme' | 'hasTouch' | 'isMobile' | 'deviceScaleFactor'
 > & {
   /** Runs before the page is loaded. */
   before?: (page: Page) => Promise<unknown>;
@@ -41,13 +41,13 @@ export class Viewer {
     private readonly ownsBrowser: boolean,
   ) {
     page.setDefaultTimeout(kDeadlineMs);
-    page.on("console", (message) => this.noteConsole(message));
-    page.on("pageerror", (error) => this.problems.push(`uncaught ${error.message}`));
-    page.on("request", (request) => this.noteRequest(request));
-    page.on("requestfailed", (request) => {
+    page.on('console', (message) => this.noteConsole(message));
+    page.on('pageerror', (error) => this.problems.push(`uncaught ${error.message}`));
+    page.on('request', (request) => this.noteRequest(request));
+    page.on('requestfailed', (request) => {
       if (!this.serverIsAway) this.problems.push(`no answer for ${request.url()}`);
     });
-    page.on("response", (response) => {
+    page.on('response', (response) => {
       if (!response.ok()) this.problems.push(`${response.status()} for ${response.url()}`);
     });
   }
@@ -86,14 +86,14 @@ export class Viewer {
 
   /** Waits for a matching element. The page publishes its state in data attributes. */
   async until(selector: string): Promise<void> {
-    await this.page.waitForSelector(selector, { state: "attached" });
+    await this.page.waitForSelector(selector, { state: 'attached' });
   }
 
   /** Waits until the picture shows a tick in this range. */
   async untilTick(least: number, most = Infinity): Promise<void> {
     await this.page.waitForFunction(
       ([low, high]) => {
-        const tick = document.getElementById("view")?.dataset.tick;
+        const tick = document.getElementById('view')?.dataset.tick;
         return tick !== undefined && Number(tick) >= low && Number(tick) <= high;
       },
       [least, most] as const,
@@ -107,13 +107,13 @@ export class Viewer {
 
   /** Returns a data attribute of the canvas. */
   async said(name: string): Promise<string | undefined> {
-    return this.page.locator("#view").evaluate((view, key) => view.dataset[key], name);
+    return this.page.locator('#view').evaluate((view, key) => view.dataset[key], name);
   }
 
   /** Returns the tick of the picture. Waits for the first picture of a scene. */
   async tick(): Promise<number> {
-    await this.until("#view[data-tick]");
-    return Number(await this.said("tick"));
+    await this.until('#view[data-tick]');
+    return Number(await this.said('tick'));
   }
 
   /**
@@ -122,24 +122,24 @@ export class Viewer {
    */
   async picture(): Promise<string> {
     await this.page.evaluate(() => {
-      for (const id of ["hint", "cursors"]) document.getElementById(id)!.style.display = "none";
+      for (const id of ['hint', 'cursors']) document.getElementById(id)!.style.display = 'none';
     });
     // It waits for a frame of the page. Screenshots by the browser's own protocol are faster, but
     // can contain an earlier frame.
-    const png = await this.page.locator("#view").screenshot({ timeout: kDeadlineMs });
+    const png = await this.page.locator('#view').screenshot({ timeout: kDeadlineMs });
     await this.page.evaluate(() =>
-      document.getElementById("cursors")!.style.removeProperty("display"),
+      document.getElementById('cursors')!.style.removeProperty('display'),
     );
-    return `data:image/png;base64,${png.toString("base64")}`;
+    return `data:image/png;base64,${png.toString('base64')}`;
   }
 
   /** Returns a picture of the canvas after two successive pictures are equal. */
   async stillPicture(): Promise<string> {
     // A moving picture can have a lower resolution.
     await this.page.waitForFunction(
-      () => !(Number(document.querySelector("canvas")?.dataset.scale) < 1),
+      () => !(Number(document.querySelector('canvas')?.dataset.scale) < 1),
     );
-    for (let last = ""; ;) {
+    for (let last = ''; ;) {
       const picture = await this.picture();
       if (picture === last) return picture;
       last = picture;
@@ -162,9 +162,9 @@ export class Viewer {
 
   /** Moves the pointer to a particle, the first in a search from the top. */
   async findParticle(): Promise<{ x: number; y: number }> {
-    await this.until("#view[data-tick]");
+    await this.until('#view[data-tick]');
     const point = await this.page.evaluate(searchParticle);
-    if (!point) throw new Error("no particle is seen");
+    if (!point) throw new Error('no particle is seen');
     await this.page.mouse.move(point.x, point.y);
     return point;
   }
@@ -172,20 +172,20 @@ export class Viewer {
   /** Clicks a particle until its values are shown. A slow click would be a pull. */
   async clickParticle(): Promise<string> {
     const { x, y } = await this.findParticle();
-    const card = this.page.locator("#inspector");
+    const card = this.page.locator('#inspector');
     do await this.page.mouse.click(x, y);
     while (!(await card.isVisible()));
-    return (await card.textContent()) ?? "";
+    return (await card.textContent()) ?? '';
   }
 
   private noteConsole(message: ConsoleMessage): void {
-    if (message.type() !== "error") return;
+    if (message.type() !== 'error') return;
     if (!this.serverIsAway) this.problems.push(`console: ${message.text()}`);
   }
 
   private noteRequest(request: Request): void {
     const { protocol, origin } = new URL(request.url());
-    const isLocal = protocol === "blob:" || protocol === "data:";
+    const isLocal = protocol === 'blob:' || protocol === 'data:';
     if (!isLocal && origin !== new URL(this.url).origin)
       this.problems.push(`asked for ${request.url()}`);
   }
@@ -199,7 +199,7 @@ declare global {
 
 /** Runs in the browser: the panel is extended, unless the page has stored another choice. */
 function extendPanel(): void {
-  if (!localStorage.getItem("vat.panel")) localStorage.setItem("vat.panel", "open");
+  if (!localStorage.getItem('vat.panel')) localStorage.setItem('vat.panel', 'open');
 }
 
 /** Runs in the browser, before the page's own scripts. */
@@ -216,16 +216,16 @@ function addBrake(): void {
 
 /** Runs in the browser. */
 function searchParticle(): { x: number; y: number } | undefined {
-  const view = document.getElementById("view") as HTMLCanvasElement;
+  const view = document.getElementById('view') as HTMLCanvasElement;
   const box = view.getBoundingClientRect();
   for (let row = 2; row < 18; ++row) {
     for (let column = 2; column < 18; ++column) {
       const clientX = box.x + (column * box.width) / 20;
       const clientY = box.y + (row * box.height) / 20;
       view.dispatchEvent(
-        new PointerEvent("pointermove", { clientX, clientY, pointerType: "mouse" }),
+        new PointerEvent('pointermove', { clientX, clientY, pointerType: 'mouse' }),
       );
-      if (view.dataset.pointer === "particle") return { x: clientX, y: clientY };
+      if (view.dataset.pointer === 'particle') return { x: clientX, y: clientY };
     }
   }
   return undefined;
@@ -243,14 +243,14 @@ async function countDifferences([first, second, step]: readonly [
       image.src = address;
       await image.decode();
       const canvas = new OffscreenCanvas(image.width, image.height);
-      const context = canvas.getContext("2d");
-      if (!context) throw new Error("the browser cannot draw");
+      const context = canvas.getContext('2d');
+      if (!context) throw new Error('the browser cannot draw');
       context.drawImage(image, 0, 0);
       return context.getImageData(0, 0, image.width, image.height).data;
     }),
   );
   const [a, b] = pixels;
-  if (!a || !b || a.length !== b.length) throw new Error("the pictures differ in size");
+  if (!a || !b || a.length !== b.length) throw new Error('the pictures differ in size');
   let count = 0;
   for (let i = 0; i < a.length; i += 4) {
     const isSeen = [0, 1, 2].some((channel) => Math.abs(a[i + channel]! - b[i + channel]!) >= step);
@@ -263,16 +263,16 @@ async function countDifferences([first, second, step]: readonly [
 function changeView(view: string): void {
   // The slow orbit of an idle page would change pictures on a slow machine.
   const given = new Map(
-    `orbit:off,${view}`.split(",").map((part) => part.split(":") as [string, string]),
+    `orbit:off,${view}`.split(',').map((part) => part.split(':') as [string, string]),
   );
-  const options = document.getElementById("view-options")!;
+  const options = document.getElementById('view-options')!;
   for (const control of options.querySelectorAll<HTMLInputElement | HTMLSelectElement>(
-    "input, select",
+    'input, select',
   )) {
-    const value = given.get(control.id.replace("view-", ""));
+    const value = given.get(control.id.replace('view-', ''));
     if (control instanceof HTMLSelectElement) control.value = value ?? control.options[0]!.value;
-    else if (control.type === "checkbox") control.checked = value === "true";
-    else control.value = value ?? (control.type === "range" ? "0.5" : "");
-    control.dispatchEvent(new Event(control.type === "range" ? "input" : "change"));
+    else if (control.type === 'checkbox') control.checked = value === 'true';
+    else control.value = value ?? (control.type === 'range' ? '0.5' : '');
+    control.dispatchEvent(new Event(control.type === 'range' ? 'input' : 'change'));
   }
 }
