@@ -26,10 +26,11 @@ class DampingMatrix {
   /// Returns the rigid particles with nonzero rows of D, in ascending order.
   const std::vector<Index>& rigid_particles() const { return rigid_; }
 
-  /// Computes force = D w, by particle, for the particles of blocks(). Of the entries of rigid
-  /// particles in `w`, only those of rigid_particles() are used. `spins` are the angular velocities
-  /// of w, by rigid body. `torque` is the torque of friction on rigid particles about their
-  /// centres; it is written only if there is friction.
+  /// Computes force = D w, by particle, for the particles of blocks(). Of the rigid particles, the
+  /// function reads only the entries of rigid_particles() in `w`. `spins` contains the angular
+  /// velocity of each rigid body that belongs to `w`. The function adds to `torque`, by particle,
+  /// the torque of friction on each rigid particle about the particle's centre. If there is no
+  /// friction, `torque` may be empty.
   void multiply(const StepContext& context, const std::vector<Vec3>& w,
                 const std::vector<Vec3>& spins, std::vector<Vec3>& force,
                 std::vector<Vec3>& torque);

@@ -67,8 +67,8 @@ struct ContactSolve {
                             ContactNewtonScratch& scratch, std::size_t block,
                             const SetExcess& set_excess);
   SweepRow make_row(const ContactConstraint& contact) const;
-  /// Adds the impulse of `row` to `contact`, and its change to the momentum of the ends. The
-  /// velocities already include this change.
+  /// Sets the impulse of `contact` to that of `row`, and adds its change to the momentum of the
+  /// ends. The velocities already include this change.
   void store(const SweepRow& row, ContactConstraint& contact) const;
   Vec3 wall_velocity(const ContactConstraint& contact) const;
   Vec3 velocity(const ContactEnd& end) const;
