@@ -14,6 +14,7 @@ using std::chrono::steady_clock;
 /// A server with a sanitizer on a busy machine takes seconds.
 constexpr std::chrono::seconds kCallerPatience{60};
 constexpr int kInternalError = -32603;
+constexpr std::uint16_t kTooSlow = 4008;
 
 script::WebSocketUrl url_of(std::uint16_t port) {
   return script::read_websocket_url("ws://127.0.0.1:" + std::to_string(port) + "/ws");
@@ -73,8 +74,10 @@ void Caller::read_for(std::chrono::milliseconds time) {
 Json Caller::take(const script::Message& message) {
   using Kind = script::Message::Kind;
   if (message.kind == Kind::closed) {
-    throw std::runtime_error("closed with " + std::to_string(message.close_code) + " " +
-                             message.bytes);
+    const std::string reason =
+        "closed with " + std::to_string(message.close_code) + " " + message.bytes;
+    if (message.close_code == kTooSlow) throw ClosedAsTooSlow(reason);
+    throw std::runtime_error(reason);
   }
   if (message.kind == Kind::text) return Json::parse(message.bytes);
   ++tally_.frames;

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 #include "protocol/json/json_reader.h"
@@ -11,9 +12,16 @@
 
 namespace vat::bench {
 
+/// The server closed the connection because the client read too slowly. On a busy machine, this can
+/// happen to each client.
+class ClosedAsTooSlow : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
 /// A connection of a well-behaved client: it acknowledges frames and waits for the reply to each
-/// request. Throws std::runtime_error if a reply does not arrive, reports a server fault, or the
-/// connection ends.
+/// request. Throws ClosedAsTooSlow, or std::runtime_error if a reply does not arrive, reports a
+/// server fault, or the connection ends for another reason.
 class Caller {
  public:
   Caller(std::uint16_t port, Tally& tally);

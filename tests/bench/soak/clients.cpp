@@ -86,6 +86,11 @@ class Client {
     caller_->read(true);
     caller_->call("session.hash");
   }
+  /// The next round connects again.
+  void lose_connection() {
+    ++tally_.closed;
+    caller_.reset();
+  }
   /// Sends moves and queries, and reads only occasionally.
   void flood() {
     enter();
@@ -181,9 +186,7 @@ class Client {
   /// Reads all messages up to the end of the connection.
   void drain() {
     while (const auto message = caller_->next(steady_clock::now() + 5ms)) {
-      if (message->kind != script::Message::Kind::closed) continue;
-      ++tally_.closed;
-      return caller_.reset();
+      if (message->kind == script::Message::Kind::closed) return lose_connection();
     }
   }
 
@@ -196,7 +199,7 @@ class Client {
   Rubbish rubbish_;
 };
 
-void play_round(Client& client, Manner manner) {
+void play_round(Client& client, Manner manner) try {
   switch (manner) {
     case Manner::steady:
       return client.steady();
@@ -211,6 +214,8 @@ void play_round(Client& client, Manner manner) {
     case Manner::rubbish:
       return client.talk_rubbish();
   }
+} catch (const ClosedAsTooSlow&) {
+  client.lose_connection();
 }
 
 }  // namespace

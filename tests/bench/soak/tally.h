@@ -16,7 +16,8 @@ struct Tally {
   std::atomic<std::uint64_t> frames = 0;
   std::atomic<std::uint64_t> garbage = 0;  ///< invalid messages
   std::atomic<std::uint64_t> flood = 0;    ///< messages of clients that exceed the rate
-  std::atomic<std::uint64_t> closed = 0;  ///< connections of these two kinds that the server closed
+  /// Connections that the server closed, of these two kinds or because the client was too slow.
+  std::atomic<std::uint64_t> closed = 0;
   std::atomic<std::uint64_t> stalls = 0;
   std::atomic<std::uint64_t> recordings = 0;  ///< downloaded recordings
 
