@@ -195,6 +195,7 @@ int serve(const ServeSettings& options, const ServeAccess& access, const Catalog
       transport_settings(options, sessions), sessions,
       with_downloads(
           make_http_site(std::move(viewer),
+                         {[&] { return sessions.metrics(); }, [&] { return sessions.slow_ticks(); },
                           [&](std::string_view authorization) {
                             return may_read_metrics(settings.access, authorization);
                           },
