@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "server/cli/common/command.h"
+#include "server/cli/common/data_folders.h"
 #include "server/recording/html_page.h"
 
 namespace vat {
@@ -15,7 +16,7 @@ namespace {
 struct ExportOptions {
   std::string recording;
   std::string page;
-  std::string web_folder = VAT_DEFAULT_WEB_DIR;
+  std::string web_folder = installed_web_folder();
 };
 
 std::string check_page_name(const std::string& name) {

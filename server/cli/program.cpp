@@ -6,6 +6,7 @@
 
 #include "core/support/nearest_name.h"
 #include "server/cli/common/command.h"
+#include "server/cli/common/version.h"
 
 namespace vat {
 namespace {
@@ -29,7 +30,7 @@ std::string suggest(const CLI::App& app) {
 
 int run_command(int argc, char** argv) {
   CLI::App app{"Particle simulation of interacting liquids, deformable and rigid bodies", "vat"};
-  app.set_version_flag("--version", "vat " VAT_VERSION);
+  app.set_version_flag("--version", version_text());
   // Not require_subcommand(1): that would hide which word is not a sub-command.
   app.require_subcommand(0, 1);
   app.callback([&app] {
@@ -45,6 +46,7 @@ int run_command(int argc, char** argv) {
   add_record_command(app, exit_code);
   add_export_command(app, exit_code);
   add_backup_commands(app, exit_code);
+  add_complete_command(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ExtrasError& error) {

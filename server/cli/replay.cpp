@@ -10,6 +10,7 @@
 
 #include "core/limits.h"
 #include "server/cli/common/command.h"
+#include "server/cli/common/data_folders.h"
 #include "server/cli/replay_seeks.h"
 #include "server/messages/describe.h"
 #include "server/operations/log_format.h"
@@ -23,7 +24,7 @@ constexpr std::uint64_t kMaxLines = 200;  // about so many of the hashes are pri
 
 struct ReplayOptions {
   std::string file;
-  std::string scenes_folder = VAT_DEFAULT_SCENES_DIR;
+  std::string scenes_folder = installed_scenes_folder();
   bool verify = false;
   std::size_t seeks = 0;
 };

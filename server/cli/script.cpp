@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "server/cli/common/command.h"
+#include "server/cli/common/data_folders.h"
 #include "server/cli/common/option_checks.h"
 #include "server/cli/common/scene_argument.h"
 #include "server/script/play_file.h"
@@ -30,7 +31,7 @@ struct ScriptOptions {
   std::vector<std::string> files;
   std::string server;
   std::string scene = "sliding-vat-liquid";
-  std::string scenes_folder = VAT_DEFAULT_SCENES_DIR;
+  std::string scenes_folder = installed_scenes_folder();
   double patience = 20;
   script::PlaySettings play;
 };

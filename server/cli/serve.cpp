@@ -23,6 +23,7 @@
 #include "protocol/scene/scene_json.h"
 #include "server/cli/certificate_watch.h"
 #include "server/cli/common/command.h"
+#include "server/cli/common/data_folders.h"
 #include "server/cli/common/scene_argument.h"
 #include "server/cli/open_files.h"
 #include "server/cli/serve_access.h"
@@ -192,14 +193,15 @@ int serve(const ServeSettings& options, const ServeAccess& access, const Catalog
 
   const auto transport = make_websocket_transport(
       transport_settings(options, sessions), sessions,
-      with_downloads(make_http_site(std::move(viewer),
-                                    {[&] { return sessions.metrics(); },
-                                     [&](std::string_view authorization) {
-                                       return may_read_metrics(settings.access, authorization);
-                                     },
-                                     [&] { return phase_of(phase, sessions); },
-                                     [&] { return sessions.health(); }, version_json(settings)}),
-                     sessions.downloads(), clock));
+      with_downloads(
+          make_http_site(std::move(viewer),
+                         {[&] { return sessions.metrics(); }, [&] { return sessions.slow_ticks(); },
+                          [&](std::string_view authorization) {
+                            return may_read_metrics(settings.access, authorization);
+                          },
+                          [&] { return phase_of(phase, sessions); },
+                          [&] { return sessions.health(); }, version_json(settings)}),
+          sessions.downloads(), clock));
   raise_file_limit(settings.limits.max_connections);
   std::optional<CertificateWatch> certificate_watch;
   if (!options.tls_certificate.empty()) {
@@ -241,6 +243,7 @@ struct CommandLine {
   SettingTexts options;
   std::string config;
   bool print_config = false;
+  bool print_variables = false;
 };
 
 void add_setting(CLI::App& command, const Setting& setting, SettingTexts& texts) {
@@ -260,14 +263,16 @@ void add_setting(CLI::App& command, const Setting& setting, SettingTexts& texts)
 }
 
 void add_serve_options(CLI::App& command, CommandLine& line) {
-  line.settings.scenes_folder = VAT_DEFAULT_SCENES_DIR;
-  line.settings.web_folder = VAT_DEFAULT_WEB_DIR;
+  line.settings.scenes_folder = installed_scenes_folder();
+  line.settings.web_folder = installed_web_folder();
   line.table = serve_settings(line.settings);
   command.add_option("--config", line.config, "Configuration file: a JSON object with settings")
       ->type_name("FILE")
       ->envname("VAT_CONFIG");
   command.add_flag("--print-config", line.print_config,
                    "Print all settings with their values and sources, and exit");
+  command.add_flag("--print-variables", line.print_variables,
+                   "Print all settings as environment variables with comments, and exit");
   for (const Setting& setting : line.table) add_setting(command, setting, line.options);
 }
 
@@ -289,6 +294,10 @@ int fail_in_file(const std::string& file, Errors errors) {
 }
 
 int run(CommandLine& line) {
+  if (line.print_variables) {
+    std::cout << environment_file(line.table);
+    return kExitOk;
+  }
   const std::vector<std::string> variables = environment();
   SettingSources sources;
   if (!line.config.empty()) {

@@ -7,6 +7,7 @@
 #include "core/numerics/cost_estimate.h"
 #include "core/simulation/simulation.h"
 #include "server/cli/common/command.h"
+#include "server/cli/common/data_folders.h"
 #include "server/cli/common/scene_argument.h"
 
 namespace vat {
@@ -15,7 +16,7 @@ namespace {
 
 struct ValidateOptions {
   std::string scene;
-  std::string scenes_folder = VAT_DEFAULT_SCENES_DIR;
+  std::string scenes_folder = installed_scenes_folder();
 };
 
 /// In round numbers, for it is an estimate.

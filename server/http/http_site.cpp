@@ -88,8 +88,10 @@ HttpResponse readiness(ServerPhase phase) {
   return {phase == ServerPhase::ready ? 200 : 503, kJson, body, {}};
 }
 
-HttpResponse metrics_response(const SiteSources& sources, std::string_view authorization) {
-  if (sources.may_read_metrics(authorization)) return {200, kPrometheusText, sources.metrics(), {}};
+/// Returns a measurement if the request may read it.
+HttpResponse measurement(const SiteSources& sources, std::string_view authorization,
+                         const char* type, const std::function<std::string()>& source) {
+  if (sources.may_read_metrics(authorization)) return {200, type, source(), {}};
   HttpResponse response = text(401, "The metrics need a token: Authorization: Bearer TOKEN.\n");
   response.headers.emplace_back("WWW-Authenticate", "Bearer");
   return response;
@@ -107,7 +109,12 @@ HttpResponse answer(const StaticFiles& viewer, const SiteSources& sources,
   if (*path == "/healthz") return {200, kJson, sources.health() + '\n', {}};
   if (*path == "/readyz") return readiness(sources.phase());
   if (*path == "/version") return {200, kJson, sources.version + '\n', {}};
-  if (*path == "/metrics") return metrics_response(sources, request.authorization);
+  if (*path == "/metrics") {
+    return measurement(sources, request.authorization, kPrometheusText, sources.metrics);
+  }
+  if (*path == "/slow-ticks") {
+    return measurement(sources, request.authorization, kJson, sources.slow_ticks);
+  }
   return viewer_file(viewer, *path, request);
 }
 

@@ -12,8 +12,10 @@ namespace vat {
 
 /// Sources of the responses about the server.
 struct SiteSources {
-  std::function<std::string()> metrics;  ///< returns the text of "/metrics"
-  /// Returns whether a request with this header Authorization may read "/metrics".
+  std::function<std::string()> metrics;     ///< returns the text of "/metrics"
+  std::function<std::string()> slow_ticks;  ///< returns the JSON text of "/slow-ticks"
+  /// Returns whether a request with this header Authorization may read "/metrics" and
+  /// "/slow-ticks".
   std::function<bool(std::string_view authorization)> may_read_metrics;
   std::function<ServerPhase()> phase;
   std::function<std::string()> health;  ///< returns the JSON text of "/healthz"
@@ -26,7 +28,7 @@ struct SiteSources {
 /// - "/healthz": 200 while the process runs, with the state of the storage.
 /// - "/readyz": 200 if the server admits sessions, 503 while the server starts, recovers or drains.
 /// - "/version".
-/// - "/metrics": 401 if the request may not read them.
+/// - "/metrics" and "/slow-ticks": 401 if the request may not read them.
 HttpHandler make_http_site(StaticFiles viewer, SiteSources sources);
 
 }  // namespace vat

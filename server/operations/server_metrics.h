@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "core/support/instruction_set.h"
+#include "server/operations/slow_ticks.h"
 #include "server/storage/storage_counts.h"
 #include "server/support/stage_clock.h"
 
@@ -53,6 +54,7 @@ class ServerMetrics {
     std::span<const StageClock::Stage> stages;
   };
   void add_tick(const Tick& tick);
+  SlowTicks& slow_ticks() { return slow_ticks_; }
   /// Adds the delay between the due time and the start of a tick.
   void add_lateness(std::chrono::duration<double> lateness);
   void add_encoded_frame(std::chrono::duration<double> time, bool is_key);
@@ -116,6 +118,7 @@ class ServerMetrics {
   void append_frames(std::string& text) const;
   void append_refusals(std::string& text) const;
 
+  SlowTicks slow_ticks_;
   mutable std::mutex mutex_;
   std::array<std::uint64_t, kTickBounds.size() + 1> ticks_{};  // by bound; last: above all bounds
   double tick_seconds_ = 0;

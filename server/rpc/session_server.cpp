@@ -53,6 +53,10 @@ std::string SessionServer::metrics() const {
   return parts_->directory.metrics();
 }
 
+std::string SessionServer::slow_ticks() const {
+  return parts_->directory.resources().metrics.slow_ticks().trace();
+}
+
 std::string SessionServer::health() const {
   return parts_->directory.health().dump();
 }

@@ -37,6 +37,8 @@ class SessionServer : public ConnectionHandler {
 
   /// Returns the metrics in the text format of Prometheus.
   std::string metrics() const;
+  /// Returns the last slow ticks in the trace event format of Chrome.
+  std::string slow_ticks() const;
 
   /// Returns the state of the storage as a JSON text for /healthz.
   std::string health() const;

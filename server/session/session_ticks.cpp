@@ -99,9 +99,20 @@ void Session::run_tick(SteadyClock::time_point now, bool timed) {
   if (!done) return;
   update_summary();  // before the frame: its acknowledgement is answered with this tick or later
   core_->notifier().publish_tick();
+  const auto published = CostClock::now();
+  if (timed && published - begin > period_) {
+    const auto stages = run.profile().spans();
+    core_->environment().metrics.slow_ticks().add({id(),
+                                                   run.tick(),
+                                                   period_,
+                                                   begin - (now - due),
+                                                   begin,
+                                                   stepped,
+                                                   published,
+                                                   {stages.begin(), stages.end()}});
+  }
   log_debug("session {}: tick {} took {:.6f} s, publishing {:.6f} s, late {:.6f} s", id(),
-            run.tick(), seconds(stepped - begin), seconds(CostClock::now() - stepped),
-            seconds(now - due));
+            run.tick(), seconds(stepped - begin), seconds(published - stepped), seconds(now - due));
 }
 
 void Session::begin_seek(PendingReply reply, std::uint64_t position) {

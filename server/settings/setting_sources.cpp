@@ -160,4 +160,19 @@ std::string settings_table(std::span<const Setting> settings) {
   return table;
 }
 
+std::string environment_file(std::span<const Setting> settings) {
+  std::string file;
+  std::string group;
+  for (const Setting& setting : settings) {
+    if (setting.group != group) {
+      group = setting.group;
+      file += "\n## " + group + "\n";
+    }
+    const std::string value = setting.shown_default.empty() ? to_text(setting.value()) : "";
+    file += "\n# " + setting.help + " (" + setting.range + ").\n#" + variable_of(setting) + '=' +
+            value + '\n';
+  }
+  return file;
+}
+
 }  // namespace vat

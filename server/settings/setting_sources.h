@@ -43,4 +43,8 @@ Json describe(std::span<const Setting> settings, const SettingSources& sources);
 /// Returns a Markdown table of the settings.
 std::string settings_table(std::span<const Setting> settings);
 
+/// Returns the current settings as environment variables, one per line. Each is commented out and
+/// follows its description and range.
+std::string environment_file(std::span<const Setting> settings);
+
 }  // namespace vat

@@ -1,6 +1,7 @@
 #include "server/support/stage_clock.h"
 
 #include <algorithm>
+
 #include "core/support/check.h"
 
 namespace vat {
@@ -19,11 +20,15 @@ void StageClock::stages_end() {
 
 void StageClock::clear() {
   for (Stage& stage : stages_) stage = {.name = stage.name};
+  spans_.clear();
 }
 
 void StageClock::charge_running() {
   const Clock::time_point now = now_();
-  if (running_ != kNone) stages_[running_].time += now - since_;
+  if (running_ != kNone) {
+    stages_[running_].time += now - since_;
+    if (spans_.size() < kMaxSpans) spans_.push_back({stages_[running_].name, since_, now});
+  }
   since_ = now;
 }
 

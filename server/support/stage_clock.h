@@ -24,6 +24,14 @@ class StageClock final : public StageObserver {
     double seconds() const { return std::chrono::duration<double>(time).count(); }
   };
 
+  /// One execution of a stage.
+  struct Span {
+    std::string_view name;
+    Clock::time_point begin;
+    Clock::time_point end;
+  };
+  static constexpr std::size_t kMaxSpans = 1024;
+
   /// `now` returns the current time.
   explicit StageClock(Clock::time_point (*now)() = Clock::now) : now_(now) {}
 
@@ -32,7 +40,9 @@ class StageClock final : public StageObserver {
 
   /// Returns the stages in the order of their first execution.
   const std::vector<Stage>& stages() const { return stages_; }
-  /// Sets all times to zero. The names and indices of stages do not change.
+  /// Returns the first kMaxSpans executions in their order.
+  const std::vector<Span>& spans() const { return spans_; }
+  /// Removes all spans and sets all times to zero. The names and indices of stages do not change.
   void clear();
 
  private:
@@ -41,7 +51,8 @@ class StageClock final : public StageObserver {
   std::size_t find(std::string_view name);
 
   Clock::time_point (*now_)();
-  std::vector<Stage> stages_;    // about twenty elements
+  std::vector<Stage> stages_;  // about twenty elements
+  std::vector<Span> spans_;
   std::size_t running_ = kNone;  // index into stages_
   Clock::time_point since_;      // start of the running stage
 };

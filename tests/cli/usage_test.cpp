@@ -111,8 +111,39 @@ INSTANTIATE_TEST_SUITE_P(
 TEST(Usage, VersionIsPrinted) {
   const ProgramResult result = run_vat({"--version"});
   EXPECT_EQ(result.exit_code, 0);
-  EXPECT_THAT(result.out, MatchesRegex("vat [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+  EXPECT_THAT(result.out, MatchesRegex("vat [0-9]+\\.[0-9]+\\.[0-9]+ \\((commit [0-9a-f]+; )?"
+                                       "instruction sets baseline[a-z0-9, ]*\\)\n"));
 }
+
+struct Completion {
+  std::vector<std::string> words;  // the last one is incomplete
+  std::string expected;
+};
+
+class Completions : public testing::TestWithParam<Completion> {};
+
+TEST_P(Completions, ArePrinted) {
+  std::vector<std::string> arguments = {"complete", "--"};
+  arguments.insert(arguments.end(), GetParam().words.begin(), GetParam().words.end());
+  const ProgramResult result = run_vat(arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.out, GetParam().expected);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    OfThe, Completions,
+    testing::Values(Completion{{"re"}, "replay\nrecord\nrestore\n"},
+                    Completion{{"complet"}, ""},  // the shell's own command
+                    Completion{{"--ver"}, "--version\n"}, Completion{{"none", ""}, ""},
+                    Completion{{"simulate", "--un"}, "--until\n"},
+                    Completion{{"simulate", "tilt"}, "tilted-floor\n"},
+                    Completion{{"simulate", "--hash", "tilt"}, "tilted-floor\n"},
+                    Completion{{"serve", "--scene", "tilt"}, "tilted-floor\n"},
+                    Completion{{"serve", "tilt"}, ""},  // serve has no positional argument
+                    Completion{{"simulate", "--level", "fin"}, "fine\nfinest\n"},
+                    Completion{{"simulate", "--until", ""}, ""},
+                    Completion{{"validate", "--scenes", VAT_SOURCE_DIR "/tests/cli/scenes", "pair"},
+                               "pair\n"}));
 
 TEST(Usage, HelpDescribesTheOutputFiles) {
   const ProgramResult result = run_vat({"simulate", "--help"});

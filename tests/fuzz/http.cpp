@@ -46,7 +46,7 @@ HttpHandler make_site(const test::TemporaryFolder& folder) {
   access.mode = AccessMode::token;
   access.metrics = hash_of_token("token");
   return make_http_site(StaticFiles::read(folder.path()).value(),
-                        {[] { return "vat_threads 1\n"; },
+                        {[] { return "vat_threads 1\n"; }, [] { return "{}"; },
                          [access](std::string_view text) { return may_read_metrics(access, text); },
                          [] { return ServerPhase::ready; }, [] { return "{}"; }, "{}"});
 }

@@ -154,4 +154,16 @@ def named_tests(tree):
     return faults
 
 
-RULES = (citations, bibliography, links, packages, commands, named_tests)
+def metrics(tree):
+    """The alerts and the dashboard use metrics of the table in the protocol only."""
+    rows = re.findall(r"^\| (`vat_[^|]*)", tree.files.get("protocol/PROTOCOL.md", ""), re.MULTILINE)
+    known = set(re.findall(r"\bvat_\w+", " ".join(rows)))
+    used = {
+        (path, name)
+        for path, text in tree.matching(["docker/operations/"], [".yaml", ".json"])
+        for name in re.findall(r"\bvat_\w+", text)
+    }
+    return [f"{path}: {name} is not a metric" for path, name in sorted(used) if name not in known]
+
+
+RULES = (citations, bibliography, links, packages, commands, metrics, named_tests)

@@ -212,6 +212,13 @@ class DocumentRules(RuleTest):
         self.refuses(rule, self.changed(files, "vat", "  test       try\n", ""), "has no test")
         self.refuses(rule, files | {"README.md": "| `./vat serve` | x |\n"}, "no row for ./vat test")
 
+    def test_metrics(self):
+        rule = document_rules.metrics
+        files = {"protocol/PROTOCOL.md": "| `vat_a{state}`, `vat_b` | gauge | vat_c |\n"}
+        alerts = "docker/operations/alerts.yaml"
+        self.accepts(rule, files | {alerts: "expr: vat_a > vat_b"})
+        self.refuses(rule, files | {alerts: "expr: vat_a > vat_c"}, "vat_c")
+
     def test_named_tests(self):
         rule = document_rules.named_tests
         table = ("| point | what | tests |\n|---|---|---|\n| a | b | `Of.It`, `Of.I*` |\n"

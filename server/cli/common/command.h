@@ -48,5 +48,7 @@ void add_record_command(CLI::App& app, int& exit_code);
 void add_export_command(CLI::App& app, int& exit_code);
 /// Adds `vat backup` and `vat restore`.
 void add_backup_commands(CLI::App& app, int& exit_code);
+/// Adds `vat complete`, which the completion of shells runs. The help does not list it.
+void add_complete_command(CLI::App& app, int& exit_code);
 
 }  // namespace vat

@@ -14,6 +14,7 @@
 #include "core/validation/validate.h"
 #include "protocol/scene/scene_json.h"
 #include "server/cli/common/command.h"
+#include "server/cli/common/data_folders.h"
 #include "server/cli/common/option_checks.h"
 #include "server/cli/common/scene_argument.h"
 #include "server/cli/record/record_run.h"
@@ -41,7 +42,7 @@ Exit codes: 0 success, 1 invalid scene or failed run, 2 wrong usage, 128 + n int
 
 struct RecordOptions {
   std::string scene;
-  std::string scenes_folder = VAT_DEFAULT_SCENES_DIR;
+  std::string scenes_folder = installed_scenes_folder();
   Level level = Level::normal;
   std::string output;
   Real until = kDefaultEnd;

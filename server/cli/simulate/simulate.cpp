@@ -13,6 +13,7 @@
 #include "core/simulation/simulation.h"
 #include "core/validation/validate.h"
 #include "server/cli/common/command.h"
+#include "server/cli/common/data_folders.h"
 #include "server/cli/common/option_checks.h"
 #include "server/cli/common/scene_argument.h"
 #include "server/cli/simulate/simulate_interrupt.h"
@@ -83,7 +84,7 @@ std::map<std::string, StepControl> control_names() {
 
 struct SimulateOptions {
   std::string scene;
-  std::string scenes_folder = VAT_DEFAULT_SCENES_DIR;
+  std::string scenes_folder = installed_scenes_folder();
   Level level = Level::normal;
   std::optional<Real> until;
   std::optional<Real> every;

@@ -15,6 +15,7 @@ constexpr std::uint64_t kLongestPeriod = 100;
 
 StageObserver* TickProfile::next_observer() {
   is_measured_ = ++ticks_since_measured_ >= period_;
+  clock_.clear();
   return is_measured_ ? &clock_ : nullptr;
 }
 
@@ -28,6 +29,10 @@ void TickProfile::tick_done(Clock::duration time, const AdvanceReport& report,
   if (is_measured_) count_stages(time);
   metrics.add_tick({time, report.steps, report.undone_steps,
                     is_measured_ ? tick_stages_ : std::span<const StageClock::Stage>()});
+}
+
+std::span<const StageClock::Span> TickProfile::spans() const {
+  return clock_.spans();
 }
 
 void TickProfile::count_stages(Clock::duration tick_time) {
@@ -46,7 +51,6 @@ void TickProfile::count_stages(Clock::duration tick_time) {
     totals_.stages[s].calls += tick_stages_[s].calls;
     totals_.stages[s].time += tick_stages_[s].time;
   }
-  clock_.clear();
   ticks_since_measured_ = 0;
   const Clock::duration cost = static_cast<Clock::rep>(measurements * kOneIn) * kMeasureTime;
   const auto wanted = static_cast<std::uint64_t>(cost / std::max(tick_time, Clock::duration(1)));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/simulation/simulation.h"
@@ -30,6 +31,8 @@ class TickProfile {
   /// Adds a tick to this profile and to the server's metrics.
   void tick_done(Clock::duration time, const AdvanceReport& report, ServerMetrics& metrics);
   const Totals& totals() const { return totals_; }
+  /// Returns the stages of the last tick in their order. Empty if it was not measured.
+  std::span<const StageClock::Span> spans() const;
 
  private:
   void count_stages(Clock::duration tick_time);

@@ -93,7 +93,7 @@ class HttpSite : public testing::Test {
     EXPECT_TRUE(files.ok());
     return make_http_site(
         std::move(files).value(),
-        {[] { return "vat_threads 4\n"; },
+        {[] { return "vat_threads 4\n"; }, [] { return R"({"traceEvents":[]})"; },
          [](std::string_view authorization) { return authorization != "wrong"; },
          [this] { return phase; }, [] { return R"({"status":"ok"})"; }, R"({"version":"1.2.3"})"});
   }
@@ -129,6 +129,7 @@ TEST_F(HttpSite, AnswersByThePath) {
         Case{{"/favicon.svg"}, 200, "image/svg+xml", "no-cache", "<svg/>"},
         Case{{"/healthz"}, 200, "application/json", "no-store", "{\"status\":\"ok\"}\n"},
         Case{{"/version"}, 200, "application/json", "no-store", "{\"version\":\"1.2.3\"}\n"},
+        Case{{"/slow-ticks"}, 200, "application/json", "no-store", R"({"traceEvents":[]})"},
         Case{{"/metrics"},
              200,
              "text/plain; version=0.0.4; charset=utf-8",
@@ -171,7 +172,7 @@ TEST_F(HttpSite, NoPathLeadsOutOfTheFolderOrToHiddenFilesAndLinks) {
 
 TEST_F(HttpSite, EveryAnswerHasTheSecurityHeaders) {
   for (const char* target :
-       {"/", "/missing", "/healthz", "/readyz", "/version", "/metrics", "/%zz"}) {
+       {"/", "/missing", "/healthz", "/readyz", "/version", "/metrics", "/slow-ticks", "/%zz"}) {
     const HttpResponse reply = site({"GET", target});
     EXPECT_EQ(header(reply, "X-Content-Type-Options"), "nosniff") << target;
     EXPECT_EQ(header(reply, "Referrer-Policy"), "no-referrer") << target;
@@ -187,11 +188,14 @@ TEST_F(HttpSite, EveryAnswerHasTheSecurityHeaders) {
 
 TEST_F(HttpSite, MetricsNeedAuthorisation) {
   for (const char* method : {"GET", "HEAD"}) {
-    EXPECT_EQ(site({method, "/metrics", "", "", "right"}).status, 200);
-    const HttpResponse refused = site({method, "/metrics", "", "", "wrong"});
-    EXPECT_EQ(refused.status, 401);
-    EXPECT_EQ(header(refused, "WWW-Authenticate"), "Bearer");
-    EXPECT_EQ(refused.body.find("vat_threads"), std::string::npos);
+    for (const char* target : {"/metrics", "/slow-ticks"}) {
+      EXPECT_EQ(site({method, target, "", "", "right"}).status, 200);
+      const HttpResponse refused = site({method, target, "", "", "wrong"});
+      EXPECT_EQ(refused.status, 401);
+      EXPECT_EQ(header(refused, "WWW-Authenticate"), "Bearer");
+      EXPECT_EQ(refused.content_type, "text/plain; charset=utf-8");
+      EXPECT_EQ(refused.body.find("vat_threads"), std::string::npos);
+    }
   }
   EXPECT_EQ(site({"GET", "/healthz", "", "", "wrong"}).status, 200);
 }

@@ -181,6 +181,13 @@ TEST_F(TickProfileTest, LooksAtSomeShortTicksThatStandForTheOthers) {
             std::string::npos);
 }
 
+TEST_F(TickProfileTest, HasTheStagesOfTheLastTickOnly) {
+  tick(1us);
+  EXPECT_EQ(profile.spans().size(), kStages);
+  EXPECT_FALSE(tick(1us));
+  EXPECT_TRUE(profile.spans().empty()) << "not sampled";
+}
+
 TEST_F(TickProfileTest, LooksAtTheShortestTicksNowAndThen) {
   tick(1ns);
   EXPECT_EQ(looks(1000, 1ns), 10);
@@ -220,6 +227,20 @@ TEST(StageClock, ChargesEachStageUntilTheNext) {
   EXPECT_EQ(clock.stages()[1].name, "second");
   EXPECT_EQ(clock.stages()[1].calls, 2U);
   EXPECT_EQ(clock.stages()[1].time, 3ms);
+  ASSERT_EQ(clock.spans().size(), 4U);
+  EXPECT_EQ(clock.spans()[2].name, "first");
+  EXPECT_EQ(clock.spans()[2].end - clock.spans()[2].begin, 10ms);
+  EXPECT_EQ(clock.spans()[3].begin - clock.spans()[2].end, 500ms);
+  clock.clear();
+  EXPECT_TRUE(clock.spans().empty());
+}
+
+TEST(StageClock, KeepsALimitedNumberOfSpans) {
+  StageClock clock(read_test_time);
+  for (std::size_t s = 0; s < StageClock::kMaxSpans + 5; ++s) clock.stage_begins("stage");
+  clock.stages_end();
+  EXPECT_EQ(clock.spans().size(), StageClock::kMaxSpans);
+  EXPECT_EQ(clock.stages()[0].calls, StageClock::kMaxSpans + 5);
 }
 
 Clock::time_point processor_time() {

@@ -1,0 +1,45 @@
+#!/usr/bin/env bash
+# Installs a build, moves it, and uses the program, its data, manual and completion.
+# Usage: installed.sh BUILD
+set -euo pipefail
+build=$1
+work=$(mktemp -d)
+trap 'rm -rf -- "$work"' EXIT
+
+fail() {
+  printf 'installed.sh: %s\n' "$*" >&2
+  exit 1
+}
+
+# expect NAME EXPECTED ACTUAL
+expect() { [[ $2 == "$3" ]] || fail "$1: '$3', expected '$2'"; }
+
+cmake --install "$build" --prefix "$work/first" >"$work/log" || fail "$(<"$work/log")"
+mv "$work/first" "$work/moved"
+vat=$work/moved/bin/vat
+data=$work/moved/share/vat
+
+for folder in scenes web; do
+  expect "$folder" "\"$folder\": \"$data/$folder\"" \
+    "$("$vat" serve --print-config | grep -o "\"$folder\": \"/[^\"]*\"")"
+done
+[[ $("$vat" validate dam-break) == *': valid'* ]] || fail "the catalogue has no dam-break"
+for file in web/index.html web/export/page.html scenes/meshes schemas/scene_format.json; do
+  [[ -e $data/$file ]] || fail "no $file"
+done
+
+for page in vat vat-serve vat-simulate; do
+  manual=$(gzip -dc "$work/moved/share/man/man1/$page.1.gz") || fail "no manual of $page"
+  [[ $manual == *".TH ${page^^} "* && $manual == *'.SH OPTIONS'* ]] || fail "manual of $page"
+done
+
+# shellcheck source=/dev/null
+source "$work/moved/share/bash-completion/completions/vat"
+# complete_words WORD...: prints the completions of the last word.
+complete_words() {
+  COMP_WORDS=(vat "$@") COMP_CWORD=$#
+  _vat "$vat"
+  printf '%s ' "${COMPREPLY[@]}"
+}
+expect 'completion of a scene' 'dam-break ' "$(complete_words simulate dam)"
+expect 'completion of a command' 'serve ' "$(complete_words se)"
