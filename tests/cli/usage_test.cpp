@@ -120,6 +120,10 @@ struct Completion {
   std::string expected;
 };
 
+void PrintTo(const Completion& completion, std::ostream* out) {
+  PrintTo(WrongUse{completion.words, ""}, out);
+}
+
 class Completions : public testing::TestWithParam<Completion> {};
 
 TEST_P(Completions, ArePrinted) {

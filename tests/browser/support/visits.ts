@@ -90,15 +90,6 @@ export class Visits {
     await this.untilWhole();
   }
 
-  /** Loads the page again, so that its first frame is the present one. */
-  async reload(): Promise<void> {
-    const tick = await this.viewer.tick();
-    await this.viewer.page.reload();
-    await this.viewer.until('#view[data-joined="true"][data-solids]');
-    await this.viewer.untilTick(tick, tick);
-    await this.untilWhole();
-  }
-
   /** Waits for full detail, which a slow page requests while the session is paused. */
   async untilWhole(): Promise<void> {
     await this.viewer.until('#connection[data-slow="false"]');

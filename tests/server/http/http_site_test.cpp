@@ -302,9 +302,10 @@ class ServedSite : public TransportTest {};
 
 // Runs the health check command of the image over a real socket.
 TEST_F(ServedSite, PassesTheHealthCheckOfTheImage) {
-  http_handler = make_http_site(StaticFiles::read("/none").value(),
-                                {[] { return ""; }, [](std::string_view) { return true; },
-                                 [] { return ServerPhase::ready; }, [] { return "{}"; }, "{}"});
+  http_handler =
+      make_http_site(StaticFiles::read("/none").value(),
+                     {[] { return ""; }, [] { return ""; }, [](std::string_view) { return true; },
+                      [] { return ServerPhase::ready; }, [] { return "{}"; }, "{}"});
   start();
   std::ifstream file(VAT_SOURCE_DIR "/docker/Dockerfile");
   std::ostringstream text;
