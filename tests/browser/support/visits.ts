@@ -84,8 +84,10 @@ export class Visits {
     await this.set(view);
     await observer.request('control.set_speed', { speed: 1 });
     await observer.request('scene.load', { scene });
-    if (tick > 0) await observer.request('control.step', { ticks: tick });
+    // The camera frames the first state that the page shows.
     await this.viewer.untilScene(scene);
+    await this.viewer.untilTick(0, 0);
+    if (tick > 0) await observer.request('control.step', { ticks: tick });
     await this.viewer.untilTick(tick, tick);
     await this.untilWhole();
   }
