@@ -7,7 +7,12 @@ const repository = resolve(web, '..');
 
 export default defineConfig({
   root: repository,
-  resolve: { alias: { three: resolve(web, 'node_modules/three') } }, // tests are outside web/
+  resolve: {
+    alias: ['three', 'vscode-json-languageservice'].map((name) => ({
+      find: name,
+      replacement: resolve(web, 'node_modules', name), // tests are outside web/
+    })),
+  },
   server: { fs: { allow: [repository] } },
   test: { include: ['tests/web/**/*.test.ts'] },
 });

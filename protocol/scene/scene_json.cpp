@@ -177,6 +177,7 @@ PartialScene read_document(const Json& document, const MeshSource& meshes, Error
   Scene& scene = partial.scene;
   ObjectReader reader(document, "", errors);
   reader.choice("format", {"vat.scene/1"});
+  reader.text("$schema", kMaxTextLength, "");  // only for editors
   scene.name = reader.text("name", kMaxNameLength, "");
   scene.title = reader.text("title", kMaxTextLength, "");
   scene.description = reader.text("description", kMaxTextLength, "");

@@ -13,21 +13,24 @@ export type Speed = [number, number, number];
 
 export type Interface =
   | {
+      /** A spring with a dashpot, and friction */
       law?: 'penalty';
-      /** [N/m] */
+      /** Stiffness [N/m] */
       stiffness: number;
-      /** [N s/m] */
+      /** Damping [N s/m] */
       damping?: number;
+      /** Separation speed relative to approach speed */
       restitution?: number;
       /** Coulomb coefficient */
       friction?: number;
       /** Names of two materials; one may be "vat" */
       materials: [Name, Name];
       threshold?: Length;
-      /** [degrees] */
+      /** Contact angle [degrees], measured in the liquid */
       contact_angle?: number;
     }
   | {
+      /** Repulsion below the threshold, attraction between threshold and reach */
       law: 'lennard_jones';
       /** At the threshold distance [N/m] */
       stiffness: number;
@@ -36,40 +39,46 @@ export type Interface =
       /** Names of two materials; one may be "vat" */
       materials: [Name, Name];
       threshold?: Length;
-      /** [degrees] */
+      /** Contact angle [degrees], measured in the liquid */
       contact_angle?: number;
     }
   | {
+      /** No overlap at the end of a step; friction without creep */
       law: 'projection';
+      /** Separation speed relative to approach speed */
       restitution?: number;
       /** Coulomb coefficient */
       friction?: number;
       /** Names of two materials; one may be "vat" */
       materials: [Name, Name];
       threshold?: Length;
-      /** [degrees] */
+      /** Contact angle [degrees], measured in the liquid */
       contact_angle?: number;
     }
   | {
+      /** The particles of the solid or wall contribute to the density and pressure of the liquid */
       law: 'sph';
       /** Names of two materials; one may be "vat" */
       materials: [Name, Name];
-      /** [degrees] */
+      /** Contact angle [degrees], measured in the liquid */
       contact_angle?: number;
     };
 
 export type DefaultInterface =
   | {
+      /** A spring with a dashpot, and friction */
       law?: 'penalty';
-      /** [N/m] */
+      /** Stiffness [N/m] */
       stiffness: number;
-      /** [N s/m] */
+      /** Damping [N s/m] */
       damping?: number;
+      /** Separation speed relative to approach speed */
       restitution?: number;
       /** Coulomb coefficient */
       friction?: number;
     }
   | {
+      /** Repulsion below the threshold, attraction between threshold and reach */
       law: 'lennard_jones';
       /** At the threshold distance [N/m] */
       stiffness: number;
@@ -77,12 +86,15 @@ export type DefaultInterface =
       reach?: number;
     }
   | {
+      /** No overlap at the end of a step; friction without creep */
       law: 'projection';
+      /** Separation speed relative to approach speed */
       restitution?: number;
       /** Coulomb coefficient */
       friction?: number;
     }
   | {
+      /** The particles of the solid or wall contribute to the density and pressure of the liquid */
       law: 'sph';
     };
 
@@ -97,15 +109,17 @@ export type Emitter = {
   position: Place;
   direction?: Direction;
   radius?: Length;
-  
+  /** Edge lengths of a rectangular opening [m] */
   size?: [Length, Length];
-  /** [m/s] */
+  /** Speed of the liquid [m/s] */
   speed: number;
-  /** [s] */
+  /** Start of the flow [s] */
   from?: number;
-  /** [s] */
+  /** End of the flow [s] */
   until?: number;
+  /** Maximum number of particles of the body */
   most_particles: number;
+  /** Whether liquid flows without a command */
   open?: boolean;
 } & Emitter1;
 export type Emitter1 = {
@@ -114,24 +128,26 @@ export type Emitter1 = {
 
 
 export interface SpringConstants {
-  /** [N/m] */
+  /** Stiffness [N/m] */
   stiffness: number;
-  /** [N s/m] */
+  /** Damping [N s/m] */
   damping?: number;
 }
 
 export interface Material {
   name: Name;
-  /** [kg/m^3] */
+  /** Density; rest density of a liquid [kg/m^3] */
   density?: number;
+  /** Constants of a liquid; required for liquid bodies */
   liquid?: {
     /** The square of the speed of sound [m^2/s^2] */
     stiffness: number;
-    /** [Pa s] */
+    /** Dynamic viscosity [Pa s] */
     viscosity: number;
     support_radius: Length;
+    /** Alpha of the solver tait; damps the sound of impacts */
     artificial_viscosity?: number;
-    /** [N/m] */
+    /** Surface tension [N/m] */
     surface_tension?: number;
   };
   /** Springs between lattice neighbours of deformable bodies */
@@ -141,17 +157,24 @@ export interface Material {
     bend?: SpringConstants;
   };
   self_contact?: SpringConstants;
+  /** Whether an implicit solve computes the springs of deformable bodies */
   implicit_springs?: boolean;
+  /** Plastic springs */
   plasticity?: {
+    /** Strain at which plastic flow begins */
     yield_strain: number;
+    /** Hardening modulus relative to the stiffness of the spring */
     hardening?: number;
-    /** [s] */
+    /** Time in which the stress beyond yield falls to 1/e [s] */
     relaxation_time?: number;
+    /** Maximum plastic strain */
     max_strain?: number;
   };
+  /** Strain at which springs tear */
   tearing_strain?: number;
+  /** Maximum strain of springs */
   elongation_limit?: number;
-  /** [Pa] */
+  /** Resistance of deformable bodies to changes of volume [Pa]; [N/m] in two dimensions */
   bulk_modulus?: number;
   appearance?: Appearance;
 }
@@ -171,24 +194,28 @@ export interface Appearance {
 }
 
 export interface Wall {
+  /** Whether a viscous liquid has the velocity of the wall at the wall */
   no_slip?: boolean;
   velocity?: Speed;
 }
 
 export interface Motion {
+  /** Kind of the motion */
   type: 'slide';
   axis?: Direction;
-  /** [m] */
+  /** Length of the motion [m] */
   stroke: number;
-  /** [s] */
+  /** Period of the motion [s] */
   period?: number;
 }
 
 export interface Vat {
   min: Place;
   max: Place;
+  /** Whether the vat is closed at the top; otherwise the side walls have unlimited height */
   lid?: boolean;
   motion?: Motion;
+  /** Properties of the walls */
   walls?: {
     x_min?: Wall;
     x_max?: Wall;
@@ -200,6 +227,7 @@ export interface Vat {
 }
 
 export interface Periodic {
+  /** Periodic axes */
   axes: ('x' | 'y' | 'z')[];
   min: Place;
   max: Place;
@@ -207,11 +235,13 @@ export interface Periodic {
 
 export interface Numerics {
   integrator?: Integrator;
-  /** [s] */
+  /** Length of a step [s] */
   step?: number;
-  /** [s] */
+  /** Time between frames [s], a whole number of steps */
   tick?: number;
+  /** fixed: all steps have the length step. adaptive: the whole scene uses shorter steps if necessary. local: each particle does, with velocity_verlet and gas */
   control?: 'fixed' | 'adaptive' | 'local';
+  /** Relative error of contacts, and of motions whose period is longer than a step, per radian of oscillation */
   tolerance?: number;
   /** Replaces integrator, step, control and tolerance */
   accuracy?: number;
@@ -221,12 +251,13 @@ export interface VelocityField {
   center?: Place;
   /** Row i contains the derivatives of component i */
   gradient?: [[number, number, number], [number, number, number], [number, number, number]];
+  /** Plane waves */
   waves?: {
-    
+    /** Amplitude [m/s] */
     amplitude: [number, number, number];
-    
+    /** Wave vector [rad/m] */
     wave_vector: [number, number, number];
-    /** [rad] */
+    /** Phase [rad] */
     phase?: number;
   }[];
 }
@@ -235,30 +266,34 @@ export interface DisplacementField {
   center?: Place;
   /** Row i contains the derivatives of component i */
   gradient?: [[number, number, number], [number, number, number], [number, number, number]];
+  /** Plane waves */
   waves?: {
-    
+    /** Amplitude [m] */
     amplitude: [number, number, number];
-    
+    /** Wave vector [rad/m] */
     wave_vector: [number, number, number];
-    /** [rad] */
+    /** Phase [rad] */
     phase?: number;
   }[];
 }
 
 export interface Box {
+  /** A box */
   type: 'box';
   center?: Place;
-  
+  /** Edge lengths [m] */
   size: [Length, Length, Length];
 }
 
 export interface Sphere {
+  /** A sphere */
   type: 'sphere';
   center?: Place;
   radius: Length;
 }
 
 export interface Cylinder {
+  /** A cylinder */
   type: 'cylinder';
   center?: Place;
   axis?: Direction;
@@ -267,42 +302,54 @@ export interface Cylinder {
 }
 
 export interface MeshFile {
+  /** A closed mesh of triangles in a file */
   type: 'mesh';
   /** Path below the scene file's folder; not in a message */
   file: string;
+  /** Factor of the coordinates in the file */
   scale?: number;
 }
 
 export interface Mesh {
+  /** A closed mesh of triangles */
   type: 'mesh';
+  /** Positions of the vertices [m] */
   vertices: Place[];
+  /** Three indices of vertices for each triangle */
   triangles: [number, number, number][];
   /** Name of the mesh in messages */
   source?: string;
 }
 
 export interface Particles {
+  /** Single particles */
   type: 'particles';
+  /** Positions in the frame of the body [m] */
   positions: Place[];
+  /** Velocities [m/s] */
   velocities?: Speed[];
+  /** Masses [kg] */
   masses?: number[];
+  /** Radii [m] */
   radii?: Length[];
+  /** Indices of fixed particles */
   fixed?: number[];
 }
 
 export interface Spring {
-  
+  /** Indices of both particles */
   particles: [number, number];
-  /** [N/m] */
+  /** Stiffness [N/m] */
   stiffness: number;
-  /** [N s/m] */
+  /** Damping [N s/m] */
   damping?: number;
-  /** [m] */
+  /** Length without force [m]; by default the initial distance */
   rest_length?: number;
 }
 
 export interface Body {
   name: Name;
+  /** Kind of the body */
   kind: 'liquid' | 'deformable' | 'rigid';
   material: Name;
   shape: Shape;
@@ -311,29 +358,34 @@ export interface Body {
   mass?: number;
   radius?: Length;
   position?: Place;
-  /** [w, x, y, z] */
+  /** Orientation of the frame as a unit quaternion [w, x, y, z] */
   orientation?: [number, number, number, number];
   velocity?: Speed;
-  /** [rad/s] */
+  /** Angular velocity about the centre of mass, in world axes [rad/s] */
   angular_velocity?: [number, number, number];
+  /** Further springs of a deformable body */
   springs?: Spring[];
   velocity_field?: VelocityField;
   displacement_field?: DisplacementField;
   /** Relative to the spacing */
   jitter?: number;
+  /** Number of the random sequence of jitter */
   seed?: number;
+  /** Whether a rigid body is held permanently */
   fixed?: boolean;
-  /** [s] */
+  /** Time until which a rigid body is held [s] */
   release?: number;
+  /** A deformable body melts */
   melting?: {
     into: Name;
-    /** [s] */
+    /** Time of melting [s] */
     at: number;
   };
   motion?: Motion;
+  /** A rigid body rotates only about an axle through its centre of mass */
   axle?: {
     direction?: Direction;
-    /** [N m s] */
+    /** Damping of a brake [N m s] */
     damping?: number;
   };
 }
@@ -345,55 +397,86 @@ export interface Drain {
 }
 /** A scene file, or the scene of a message; protocol/SCENE.md describes all members */
 export interface Scene {
+  /** Address of this schema, for editors */
+  $schema?: string;
+  /** Version of the format */
   format: 'vat.scene/1';
+  /** Name of the scene; by default the name of the file */
   name?: string;
+  /** Title for people */
   title?: string;
+  /** Description for people */
   description?: string;
-  /** [m/s^2] */
+  /** Acceleration [m/s^2] */
   gravity?: [number, number, number];
+  /** Materials of the bodies */
   materials: Material[];
   default_interface?: DefaultInterface;
+  /** Contacts of pairs of materials */
   interfaces?: Interface[];
   vat?: Vat;
   periodic?: Periodic;
+  /** Liquid solver */
   pressure_solver?: 'gas' | 'tait' | 'incompressible';
+  /** Smoothing kernel of tait and incompressible */
   kernel?: 'wendland_c2' | 'cubic_spline';
+  /** Precision of the sums over pairs of tait and incompressible */
   pair_precision?: 'single' | 'double';
+  /** Whether the solver gas uses half of the pressure force */
   printed_pressure_force?: boolean;
+  /** Model of surface tension */
   surface_tension_model?: 'curvature' | 'cohesion';
+  /** Tolerances of the solver incompressible */
   incompressible?: {
+    /** Mean relative excess of the density at the end of a step */
     density_tolerance?: number;
+    /** Mean relative change of the density by the velocities in a step */
     divergence_tolerance?: number;
+    /** Maximum number of iterations of each linear solve */
     most_iterations?: number;
   };
+  /** 3, or 2 for a scene in the plane y = 0 */
   dimensions?: 2 | 3;
+  /** Acceleration towards a centre, proportional to the distance */
   central_field?: {
     center?: Place;
-    /** [rad/s] */
+    /** Angular frequency of the oscillation about the centre [rad/s] */
     angular_frequency: number;
   };
+  /** Initial drag on liquid particles */
   settling?: {
-    /** [1/s] */
+    /** Drag coefficient per mass [1/s] */
     drag: number;
-    /** [s] */
+    /** End of the drag [s] */
     until: number;
   };
+  /** Bodies below a speed sleep until something moves them */
   sleeping?: {
-    /** [m/s] */
+    /** Speed below which bodies fall asleep [m/s] */
     speed?: number;
-    /** [s] */
+    /** Time below this speed [s] */
     after?: number;
   };
+  /** Inflow of liquid */
   emitters?: Emitter[];
+  /** Boxes that remove liquid particles */
   drains?: Drain[];
+  /** Switches of forces */
   forces?: {
+    /** Gravity and the central field */
     gravity?: boolean;
+    /** Pressure of liquids */
     pressure?: boolean;
+    /** Viscosity of liquids, including no-slip walls */
     viscosity?: boolean;
+    /** Springs of deformable bodies */
     springs?: boolean;
+    /** Interfaces between bodies, and contact of a body with itself */
     contacts?: boolean;
+    /** Walls of the vat */
     walls?: boolean;
   };
   numerics?: Numerics;
+  /** The bodies */
   bodies: Body[];
 }
