@@ -3,6 +3,7 @@ import { readFile } from 'node:fs/promises';
 import type { AddressInfo } from 'node:net';
 import { extname, join } from 'node:path';
 import { fileURLToPath } from 'node:url';
+import type { Page } from 'playwright-core';
 import { build } from 'vite';
 import { afterAll, beforeAll, expect, it } from 'vitest';
 import { Observer } from './support/observer';
@@ -10,12 +11,17 @@ import { Server } from './support/server';
 import { sharedBrowser } from './support/shared';
 import { kInTime } from './support/visits';
 
-/** The example page of the web component, on a server of another origin. */
+/** The example pages of the web component, on a server of another origin. */
 const kWeb = fileURLToPath(new URL('../../web/', import.meta.url));
 const kFolder = join(kWeb, 'element/dist');
 const kRecording = fileURLToPath(
   new URL('../golden/frame_recordings/twice.vatrec', import.meta.url),
 );
+const kExample = fileURLToPath(new URL('../../protocol/examples/embed.html', import.meta.url));
+const kFiles: Readonly<Record<string, string>> = {
+  '/twice.vatrec': kRecording,
+  '/embed.html': kExample,
+};
 const kTypes: Readonly<Record<string, string>> = {
   '.html': 'text/html',
   '.js': 'text/javascript',
@@ -24,17 +30,21 @@ const kTypes: Readonly<Record<string, string>> = {
 
 const site = createServer((request, response) => {
   const { pathname } = new URL(request.url ?? '/', 'http://site');
-  const path = pathname === '/twice.vatrec' ? kRecording : join(kFolder, pathname);
+  const path = kFiles[pathname] ?? join(kFolder, pathname);
   readFile(path).then(
     (content) => {
       response.setHeader('Content-Type', kTypes[extname(path)] ?? 'application/octet-stream');
-      response.end(content);
+      response.end(path === kExample ? String(content).replace(kAddress, liveAddress()) : content);
     },
     () => response.writeHead(404).end(),
   );
 });
 let origin = '';
 let server: Server;
+
+/** The address of the server in the example, and that of the test's server. */
+const kAddress = 'ws://127.0.0.1:8080/ws';
+const liveAddress = (): string => `${server.url.replace('http', 'ws')}ws`;
 
 beforeAll(async () => {
   await build({ configFile: join(kWeb, 'vite.element.config.ts'), logLevel: 'error' });
@@ -56,7 +66,8 @@ declare global {
   }
 }
 
-it('shows two live scenes in an article, and a recording', async () => {
+/** Calls `act` with a page. Fails if the page has a problem. */
+async function withPage(act: (page: Page) => Promise<void>): Promise<void> {
   const browser = await sharedBrowser();
   const page = await browser.newPage({
     viewport: { width: 500, height: 900 },
@@ -69,13 +80,32 @@ it('shows two live scenes in an article, and a recording', async () => {
     window.canvasOf = (n) =>
       document.querySelectorAll('vat-viewer')[n]?.shadowRoot?.querySelector('canvas');
   });
-  const shownTick = (n: number): Promise<number> =>
-    page.evaluate((at) => Number(window.canvasOf(at)?.dataset.tick ?? -1), n);
   try {
-    await page.goto(`${origin}/example.html?server=${server.url.replace('http', 'ws')}ws`);
+    await act(page);
+    expect(problems).toEqual([]);
+  } finally {
+    await page.context().close();
+  }
+}
+
+/** Waits until the n-th viewer shows a tick of at least `tick`. */
+const shows = (page: Page, n: number, tick: number): Promise<void> =>
+  expect
+    .poll(() => page.evaluate((at) => Number(window.canvasOf(at)?.dataset.tick ?? -1), n), kInTime)
+    .toBeGreaterThanOrEqual(tick);
+
+it('shows a live session in the example of a page', () =>
+  withPage(async (page) => {
+    await page.goto(`${origin}/embed.html`);
+    await shows(page, 0, 2);
+  }));
+
+it('shows two live scenes in an article, and a recording', () =>
+  withPage(async (page) => {
+    await page.goto(`${origin}/example.html?server=${liveAddress()}`);
     for (const n of [0, 1]) {
       await page.locator('vat-viewer').nth(n).scrollIntoViewIfNeeded();
-      await expect.poll(() => shownTick(n), kInTime).toBeGreaterThan(1);
+      await shows(page, n, 2);
     }
     const observer = await Observer.join(server.url);
     const { sessions } = await observer.request('session.list', {});
@@ -88,13 +118,9 @@ it('shows two live scenes in an article, and a recording', async () => {
     await second.evaluate((element) => element.setAttribute('src', '/twice.vatrec'));
     const position = second.getByLabel('Position in the recording');
     await expect.poll(() => position.getAttribute('max'), kInTime).toBe('3');
-    await expect.poll(() => shownTick(1), kInTime).toBeGreaterThanOrEqual(0);
+    await shows(page, 1, 0);
     await second.evaluate((element) => element.setAttribute('src', 'ftp://host/x'));
     await expect
       .poll(() => second.getByRole('status').textContent(), kInTime)
       .toContain('must begin with ws:');
-    expect(problems).toEqual([]);
-  } finally {
-    await page.context().close();
-  }
-});
+  }));

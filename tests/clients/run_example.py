@@ -1,7 +1,8 @@
-"""run_example.py PROGRAM EXPECTED COMMAND...: runs COMMAND with a server.
+"""run_example.py [--catalogue] PROGRAM EXPECTED COMMAND...: runs COMMAND with a server.
 
-The address of a separate server is the last argument of COMMAND. It must succeed and print the
-content of the file EXPECTED.
+The server has the scenes of the tests, or with --catalogue the scenes of the program. Its address is
+the last argument of COMMAND, whose input has ten empty lines. COMMAND must succeed and print the
+content of the file EXPECTED. A line of EXPECTED that starts with "~ " is a regular expression.
 """
 
 import difflib
@@ -14,22 +15,35 @@ SCENES = Path(__file__).resolve().parents[1] / "protocol" / "scenes"
 PATIENCE = 60
 
 
+def matches(pattern, line):
+    return re.fullmatch(pattern[2:], line) if pattern.startswith("~ ") else pattern == line
+
+
+def with_matches(wanted, printed):
+    """Returns `wanted` with the printed lines in place of the expressions that match them."""
+    pairs = zip(wanted, printed + [""] * len(wanted))
+    return [line if matches(pattern, line) else pattern for pattern, line in pairs]
+
+
 def main():
-    program, expected, *command = sys.argv[1:]
-    serve = [program, "serve", "--port", "0", "--scenes", SCENES, "--scene", "pool",
-             "--log-level", "error"]
+    arguments = sys.argv[1:]
+    scenes = ["--scenes", SCENES, "--scene", "pool"]
+    if arguments[0] == "--catalogue":
+        arguments, scenes = arguments[1:], []
+    program, expected, *command = arguments
+    serve = [program, "serve", "--port", "0", *scenes, "--log-level", "error"]
     with subprocess.Popen(serve, stdout=subprocess.PIPE, text=True) as server:
         try:
             secure, port = re.search(r"http(s?)://127\.0\.0\.1:(\d+)/",
                                      server.stdout.readline()).groups()
             done = subprocess.run([*command, f"ws{secure}://127.0.0.1:{port}/ws"], text=True,
-                                  stdout=subprocess.PIPE, timeout=PATIENCE)
+                                  input="\n" * 10, stdout=subprocess.PIPE, timeout=PATIENCE)
         finally:
             server.terminate()
-    wanted = Path(expected).read_text("utf-8")
-    sys.stdout.writelines(difflib.unified_diff(
-        wanted.splitlines(True), done.stdout.splitlines(True), "expected", "printed"))
-    return done.returncode or int(done.stdout != wanted)
+    printed = done.stdout.splitlines()
+    wanted = with_matches(Path(expected).read_text("utf-8").splitlines(), printed)
+    print(*difflib.unified_diff(wanted, printed, "expected", "printed", lineterm=""), sep="\n")
+    return done.returncode or int(printed != wanted)
 
 
 if __name__ == "__main__":
