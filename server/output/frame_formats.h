@@ -25,10 +25,12 @@ Result<std::unique_ptr<FrameWriter>> create_npy_writer(const std::string& name);
 Result<std::unique_ptr<FrameWriter>> create_ply_writer(const std::string& name,
                                                        std::size_t frame_count);
 
-/// Returns a writer of a series of legacy VTK polydata in text. Properties of each particle:
-/// position [m], velocity [m/s], index of the body in the scene, kind of body (number of BodyKind),
-/// radius [m], density [kg/m^3], pressure [Pa]. Density and pressure are 0 except for liquids.
-Result<std::unique_ptr<FrameWriter>> create_vtk_writer(const std::string& name,
+/// Returns a writer of a series of VTK files (.vtu, binary, compressed by LZ4) and of a list of
+/// them with their times (.pvd). Properties of each particle: position [m], velocity [m/s], index
+/// of the body in the scene, kind of body (number of BodyKind), radius [m], density [kg/m^3],
+/// pressure [Pa]. Density and pressure are 0 except for liquids. Creates the list, and returns an
+/// error if the creation fails.
+Result<std::unique_ptr<FrameWriter>> create_pvd_writer(const std::string& name,
                                                        std::size_t frame_count);
 
 }  // namespace vat

@@ -17,7 +17,7 @@ std::string ending_of(const std::string& name) {
 
 bool is_frame_file_name(const std::string& name) {
   const std::string ending = ending_of(name);
-  return ending == ".csv" || ending == ".vtk" || ending == ".ply" || ending == ".npy";
+  return ending == ".csv" || ending == ".pvd" || ending == ".ply" || ending == ".npy";
 }
 
 Result<std::unique_ptr<FrameWriter>> create_frame_writer(const std::string& name,
@@ -25,7 +25,7 @@ Result<std::unique_ptr<FrameWriter>> create_frame_writer(const std::string& name
   const std::string ending = ending_of(name);
   if (ending == ".csv") return create_csv_writer(name);
   if (ending == ".npy") return create_npy_writer(name);
-  if (ending == ".vtk") return create_vtk_writer(name, frame_count);
+  if (ending == ".pvd") return create_pvd_writer(name, frame_count);
   if (ending == ".ply") return create_ply_writer(name, frame_count);
   return Error{"bad_file_name", name, std::string("must end in ") + kFrameEndings};
 }

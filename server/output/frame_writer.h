@@ -22,14 +22,14 @@ class FrameWriter {
 };
 
 /// File name extensions that create_frame_writer() supports, for error messages.
-inline constexpr const char* kFrameEndings = ".csv, .vtk, .ply or .npy";
+inline constexpr const char* kFrameEndings = ".csv, .pvd, .ply or .npy";
 
 /// Returns whether the name has one of the extensions in kFrameEndings.
 bool is_frame_file_name(const std::string& name);
 
 /// Returns a writer for the file name's extension, which must be known:
 /// - `.csv`: one row per particle and time, with a header row.
-/// - `.vtk`: legacy VTK polydata in text, one file per time (see series_name()).
+/// - `.pvd`: a list of VTK files, one `.vtu` file per time (see series_name()).
 /// - `.ply`: binary points coloured by kind of body, one file per time.
 /// - `.npy`: one array [times, particles, 6] of float64: x, y, z, vx, vy, vz.
 ///
@@ -37,7 +37,7 @@ bool is_frame_file_name(const std::string& name);
 Result<std::unique_ptr<FrameWriter>> create_frame_writer(const std::string& name,
                                                          std::size_t frame_count);
 
-/// Returns the name of one file of a series: "run-0000.vtk" for "run.vtk" and index 0. A series of
+/// Returns the name of one file of a series: "run-0000.ply" for "run.ply" and index 0. A series of
 /// one file uses `name`.
 std::string series_name(const std::string& name, std::size_t index, std::size_t count);
 

@@ -105,11 +105,11 @@ std::string numbered(const char* ending, std::size_t output) {
   return "run-000" + std::to_string(output) + ending;
 }
 
-TEST(ExactOutput, Vtk) {
+TEST(ExactOutput, Vtu) {
   const TemporaryFolder folder;
-  run_program(folder, "run.vtk");
+  run_program(folder, "run.pvd");
   at_each_output([&](const Simulation& simulation, std::size_t output) {
-    const VtkFile file = read_vtk(folder.file(numbered(".vtk", output)));
+    const VtuFile file = read_vtu(folder.file(numbered(".vtu", output)));
     ASSERT_EQ(file.time, simulation.time());
     ASSERT_EQ(file.kind.size(), simulation.particle_count());
     std::size_t p = 0;

@@ -11,7 +11,10 @@ namespace vat::test::output_test {
 namespace {
 
 using testing::_;
+using testing::Contains;
+using testing::Each;
 using testing::ElementsAre;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::StartsWith;
 
@@ -33,17 +36,19 @@ TEST(Output, FullDiskIsAnErrorAndLeavesNoResult) {
     int blocks;
     const char* until;
     const char* name;
+    const char* full = name;  // the file that cannot be written
   };
-  for (const auto& [blocks, until, name] :
-       {Case{1, "0", "run.csv"}, Case{1, "0", "run.npy"}, Case{1, "0", "run.vtk"},
+  for (const auto& [blocks, until, name, full] :
+       {Case{1, "0", "run.csv"}, Case{1, "0", "run.npy"}, Case{1, "0", "run.pvd", "run.vtu"},
         Case{1, "0", "run.ply"}, Case{256, "0.4", "run.csv"}, Case{256, "0.4", "run.npy"}}) {
     const TemporaryFolder folder;
     const ProgramResult result = run_vat_with_file_limit(
         blocks, {"simulate", test_scene("mixed"), "--until", until, "--output", folder.file(name)});
     EXPECT_EQ(result.exit_code, 1) << name;
     EXPECT_THAT(lines_of(result.err),
-                ElementsAre(folder.file(name) + ": cannot be written: File too large"));
-    EXPECT_THAT(folder.names(), ElementsAre(std::string(name) + ".part"));
+                ElementsAre(folder.file(full) + ": cannot be written: File too large"));
+    EXPECT_THAT(folder.names(), Contains(std::string(full) + ".part"));
+    EXPECT_THAT(folder.names(), Each(EndsWith(".part")));
   }
 }
 
@@ -58,7 +63,7 @@ TEST(Output, FullDiskForDiagnosticsIsAnError) {
 
 TEST(Output, FolderInPlaceOfAFileIsAnError) {
   const TemporaryFolder folder;
-  for (const char* name : {"run.csv", "run.npy", "run.vtk", "run.ply"}) {
+  for (const char* name : {"run.csv", "run.npy", "run.pvd", "run.ply"}) {
     std::filesystem::create_directory(folder.file(name));
     const ProgramResult result =
         run_vat({"simulate", test_scene("pair"), "--until", "0", "--output", folder.file(name)});
@@ -85,7 +90,7 @@ TEST(Output, SceneWithoutBodiesHasNoRows) {
   const TemporaryFolder folder;
   const std::string scene = folder.file("empty.json");
   std::ofstream(scene) << R"({"format": "vat.scene/1", "materials": [], "bodies": []})";
-  for (const char* name : {"run.csv", "run.npy", "run.vtk", "run.ply"}) {
+  for (const char* name : {"run.csv", "run.npy", "run.pvd", "run.ply"}) {
     const ProgramResult result =
         run_vat({"simulate", scene, "--until", "0", "--output", folder.file(name), "--diagnostics",
                  folder.file("d.csv")});
@@ -93,7 +98,7 @@ TEST(Output, SceneWithoutBodiesHasNoRows) {
   }
   EXPECT_TRUE(read_csv(folder.file("run.csv")).rows.empty());
   EXPECT_THAT(read_npy(folder.file("run.npy")).shape, ElementsAre(1u, 0u, 6u));
-  EXPECT_TRUE(read_vtk(folder.file("run.vtk")).points.empty());
+  EXPECT_TRUE(read_vtu(folder.file("run.vtu")).points.empty());
   EXPECT_TRUE(read_ply(folder.file("run.ply")).empty());
   const Table diagnostics = read_csv(folder.file("d.csv"));
   EXPECT_EQ(diagnostics.number(0, "kinetic_energy"), 0);

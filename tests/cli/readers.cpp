@@ -1,5 +1,7 @@
 #include "tests/cli/readers.h"
 
+#include <lz4.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cstring>
@@ -46,16 +48,6 @@ T take(std::string_view& bytes) {
   return value;
 }
 
-std::vector<double> read_values(std::istream& stream, std::size_t count) {
-  std::vector<double> values(count);
-  for (double& value : values) {
-    std::string word;
-    stream >> word;
-    value = parse_number(word);
-  }
-  return values;
-}
-
 void expect_words(std::istream& stream, const std::string& words) {
   std::istringstream expected(words);
   for (std::string word, found; expected >> word;) {
@@ -63,10 +55,33 @@ void expect_words(std::istream& stream, const std::string& words) {
   }
 }
 
-std::vector<double> read_scalars(std::istream& stream, const std::string& declaration,
-                                 std::size_t count) {
-  expect_words(stream, "SCALARS " + declaration + " 1 LOOKUP_TABLE default");
-  return read_values(stream, count);
+/// Returns the text between `begin` and the next `end`.
+std::string between(const std::string& text, const std::string& begin, const std::string& end) {
+  const std::size_t from = text.find(begin);
+  require(from != std::string::npos, "no " + begin);
+  const std::size_t to = text.find(end, from + begin.size());
+  require(to != std::string::npos, "no " + end);
+  return text.substr(from + begin.size(), to - from - begin.size());
+}
+
+/// Returns the array that begins with the sizes of its compressed blocks.
+std::string decompressed(std::string_view bytes) {
+  const auto count = take<std::uint64_t>(bytes);
+  const auto whole = take<std::uint64_t>(bytes);
+  const auto last = take<std::uint64_t>(bytes);
+  std::vector<std::uint64_t> sizes(count);
+  for (std::uint64_t& size : sizes) size = take<std::uint64_t>(bytes);
+  std::string array;
+  for (std::size_t i = 0; i < count; ++i) {
+    std::string block(i + 1 == count && last > 0 ? last : whole, '\0');
+    require(bytes.size() >= sizes[i], "an incomplete block");
+    const int size = LZ4_decompress_safe(bytes.data(), block.data(), static_cast<int>(sizes[i]),
+                                         static_cast<int>(block.size()));
+    require(size == static_cast<int>(block.size()), "a block of another size");
+    array += block;
+    bytes.remove_prefix(sizes[i]);
+  }
+  return array;
 }
 
 }  // namespace
@@ -142,33 +157,46 @@ std::vector<PlyVertex> read_ply(const std::string& path) {
   return vertices;
 }
 
-VtkFile read_vtk(const std::string& path) {
-  std::istringstream stream(read_file(path));
-  std::string line;
-  std::getline(stream, line);
-  require(line == "# vtk DataFile Version 3.0", "no VTK file");
-  std::getline(stream, line);
-  require(line.size() < 256, "long title");
-  VtkFile file;
-  std::size_t count = 0;
-  expect_words(stream, "ASCII DATASET POLYDATA FIELD FieldData 1 TIME 1 1 double");
-  file.time = read_values(stream, 1).front();
-  expect_words(stream, "POINTS");
-  stream >> count;
-  expect_words(stream, "double");
-  file.points = read_values(stream, 3 * count);
-  expect_words(stream, "VERTICES " + std::to_string(count) + ' ' + std::to_string(2 * count));
-  for (std::size_t i = 0; i < count; ++i) expect_words(stream, "1 " + std::to_string(i));
-  expect_words(stream, "POINT_DATA " + std::to_string(count));
-  file.body = read_scalars(stream, "body unsigned_int", count);
-  file.kind = read_scalars(stream, "kind unsigned_char", count);
-  file.radius = read_scalars(stream, "radius double", count);
-  file.density = read_scalars(stream, "density double", count);
-  file.pressure = read_scalars(stream, "pressure double", count);
-  expect_words(stream, "VECTORS velocity double");
-  file.velocity = read_values(stream, 3 * count);
-  require(!(stream >> line), "text after the end");
-  return file;
+VtuFile read_vtu(const std::string& path) {
+  const std::string file = read_file(path);
+  const std::string begin = "<AppendedData encoding=\"raw\">\n_";
+  const std::size_t end = file.find(begin);
+  require(end != std::string::npos, "no appended data");
+  const std::string xml = file.substr(0, end);
+  const std::string_view data = std::string_view(file).substr(end + begin.size());
+  require(xml.find("type=\"UnstructuredGrid\"") != std::string::npos &&
+              xml.find("header_type=\"UInt64\" compressor=\"vtkLZ4DataCompressor\"") !=
+                  std::string::npos,
+          "unknown header");
+  VtuFile vtu;
+  vtu.time = parse_number(between(xml, "format=\"ascii\">", "<"));
+  const double count = parse_number(between(xml, "NumberOfPoints=\"", "\""));
+  const auto array = [&]<class Number>(const char* name, const char* type, Number) {
+    const std::string element =
+        between(xml, "<DataArray type=\"" + std::string(type) + "\" Name=\"" + name + '"', "/>");
+    const auto offset = parse_number(between(element, "offset=\"", "\""));
+    std::string_view values = data.substr(static_cast<std::size_t>(offset));
+    const std::string bytes = decompressed(values);
+    values = bytes;
+    std::vector<double> numbers;
+    while (!values.empty()) numbers.push_back(static_cast<double>(take<Number>(values)));
+    return numbers;
+  };
+  vtu.points = array("Points", "Float64", double());
+  vtu.body = array("body", "UInt32", std::uint32_t());
+  vtu.kind = array("kind", "UInt8", std::uint8_t());
+  vtu.radius = array("radius", "Float64", double());
+  vtu.density = array("density", "Float64", double());
+  vtu.pressure = array("pressure", "Float64", double());
+  vtu.velocity = array("velocity", "Float64", double());
+  require(static_cast<double>(vtu.kind.size()) == count, "another number of points");
+  const std::vector<double> cells = array("offsets", "Int32", std::int32_t());
+  require(cells == std::vector<double>(count == 0 ? 0 : 1, count), "no cell of all points");
+  const std::vector<double> points = array("connectivity", "Int32", std::int32_t());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    require(points[i] == static_cast<double>(i), "a cell without some points");
+  }
+  return vtu;
 }
 
 double parse_number(std::string_view text) {

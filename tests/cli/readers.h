@@ -34,13 +34,13 @@ struct PlyVertex {
 };
 std::vector<PlyVertex> read_ply(const std::string& path);
 
-struct VtkFile {
+struct VtuFile {
   double time = 0;
   std::vector<double> points;
   std::vector<double> body, kind, radius, density, pressure;
   std::vector<double> velocity;
 };
-VtkFile read_vtk(const std::string& path);
+VtuFile read_vtu(const std::string& path);
 
 /// Parses the complete text as a number.
 double parse_number(std::string_view text);

@@ -66,7 +66,7 @@ TEST(Simulate, HashDoesNotDependOnOutputs) {
   const std::string without = hash_of({"--until", "0.2"});
   EXPECT_EQ(hash_of({"--until", "0.2", "--every", "0.007"}), without);
   EXPECT_EQ(hash_of({"--until", "0.2", "--every", "5"}), without);
-  EXPECT_EQ(hash_of({"--until", "0.2", "--output", folder.file("a.vtk"), "--diagnostics",
+  EXPECT_EQ(hash_of({"--until", "0.2", "--output", folder.file("a.pvd"), "--diagnostics",
                      folder.file("a.csv"), "--every", "0.05"}),
             without);
 }

@@ -78,8 +78,8 @@ INSTANTIATE_TEST_SUITE_P(
                     WrongUse{with_scene({"--control", "loose"}), "--control"},
                     WrongUse{with_scene({"--accuracy", "1"}), "--accuracy"},
                     WrongUse{with_scene({"--accuracy", "1e-3", "--dt", "0.001"}), "--accuracy"},
-                    WrongUse{with_scene({"--output", "run.xyz"}), ".csv, .vtk, .ply or .npy"},
-                    WrongUse{with_scene({"--output", "run"}), ".csv, .vtk, .ply or .npy"},
+                    WrongUse{with_scene({"--output", "run.xyz"}), ".csv, .pvd, .ply or .npy"},
+                    WrongUse{with_scene({"--output", "run"}), ".csv, .pvd, .ply or .npy"},
                     WrongUse{with_scene({"--diagnostics", "run.txt"}), "must end in .csv"},
                     WrongUse{with_scene({"--diagnostics", "scene.json"}), "must end in .csv"},
                     WrongUse{with_scene({"--output", "a.csv", "--diagnostics", "./a.csv"}),
@@ -153,7 +153,7 @@ TEST(Usage, HelpDescribesTheOutputFiles) {
   const ProgramResult result = run_vat({"simulate", "--help"});
   EXPECT_EQ(result.exit_code, 0);
   for (const char* text :
-       {".csv", ".vtk", ".ply", ".npy", "--every", "velocity_verlet", "2 wrong"}) {
+       {".csv", ".pvd", ".ply", ".npy", "--every", "velocity_verlet", "2 wrong"}) {
     EXPECT_THAT(result.out, HasSubstr(text));
   }
 }

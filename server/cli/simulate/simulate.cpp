@@ -37,9 +37,9 @@ constexpr std::size_t kMaxThreads = 256;
 constexpr const char* kSimulateFooter = R"(Output files
   .csv   one row per particle and output time: time, body, kind, particle, position x y z,
          velocity vx vy vz, density and pressure (empty unless the body is a liquid)
-  .vtk   legacy VTK polydata in text, one file per output time (NAME-0000.vtk, NAME-0001.vtk, ...):
+  .pvd   list of compressed VTK files, one per output time (NAME-0000.vtu, NAME-0001.vtu, ...):
          position, velocity, number of the body, kind (0 liquid, 1 deformable, 2 rigid), radius,
-         density and pressure (0 unless the body is a liquid)
+         density and pressure (0 unless the body is a liquid). ParaView opens the list
   .ply   binary points in single precision, coloured by kind, one file per output time
   .npy   one array [outputs, particles, 6] of float64: x, y, z, vx, vy, vz; only if the number of
          particles is constant
@@ -302,7 +302,7 @@ void add_simulate_options(CLI::App& command, SimulateOptions& options) {
   add_isa_option(command, options.instructions);
   add_device_option(command, options.device);
   command
-      .add_option("--output", options.output, "File for the particles: .csv, .vtk, .ply or .npy")
+      .add_option("--output", options.output, "File for the particles: .csv, .pvd, .ply or .npy")
       ->check(CLI::Validator(check_frame_file_name, "FILE"));
   command.add_option("--diagnostics", options.diagnostics, "File for the diagnostics: .csv")
       ->check(csv_file_name());
