@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Installs a build, moves it, and uses the program, its data, manual and completion.
-# Usage: installed.sh BUILD
+# Usage: installed.sh BUILD SOURCES
 set -euo pipefail
-build=$1
+build=$1 sources=$2
 work=$(mktemp -d)
 trap 'rm -rf -- "$work"' EXIT
 
@@ -32,6 +32,11 @@ for page in vat vat-serve vat-simulate; do
   manual=$(gzip -dc "$work/moved/share/man/man1/$page.1.gz") || fail "no manual of $page"
   [[ $manual == *".TH ${page^^} "* && $manual == *'.SH OPTIONS'* ]] || fail "manual of $page"
 done
+
+cmake -S "$sources/tests/cli/library" -B "$work/example" -DCMAKE_PREFIX_PATH="$work/moved" >"$work/log" &&
+  cmake --build "$work/example" >>"$work/log" || fail "$(<"$work/log")"
+# Free fall: -9.81 / 2 * 0.5^2 m.
+expect "a program with the library" "after 0.5 s: -1.22625 m" "$("$work/example/fall")"
 
 # shellcheck source=/dev/null
 source "$work/moved/share/bash-completion/completions/vat"
