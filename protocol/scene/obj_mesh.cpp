@@ -13,10 +13,6 @@
 namespace vat {
 namespace {
 
-Error mesh_error(const std::string& source, const std::string& what) {
-  return {"bad_mesh", "", source + ": " + what};
-}
-
 constexpr std::string_view kBlank = " \t\r";
 
 /// Removes the first word of `line` and returns it. Returns an empty text if there is none.
@@ -82,11 +78,11 @@ bool read_triangles(const tinyobj::mesh_t& faces, MeshShape& mesh) {
 
 }  // namespace
 
+Error mesh_error(const std::string& source, const std::string& fault) {
+  return {"bad_mesh", "", source + ": " + fault};
+}
+
 Result<MeshShape> read_obj(const std::string& text, const std::string& source, Real scale) {
-  if (text.size() > kMaxObjBytes) {
-    return Error{"too_large", "",
-                 source + ": at most " + std::to_string(kMaxObjBytes) + " bytes are allowed"};
-  }
   if (const std::size_t line = bad_vertex_line(text); line != 0) {
     return mesh_error(source, "line " + std::to_string(line) + ": a vertex needs three numbers");
   }

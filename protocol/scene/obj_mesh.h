@@ -7,11 +7,12 @@
 
 namespace vat {
 
-inline constexpr std::size_t kMaxObjBytes = 16 * 1024 * 1024;  // sufficient for 200 000 triangles
+/// Returns an error with the code bad_mesh about the mesh with the name `source`.
+Error mesh_error(const std::string& source, const std::string& fault);
 
 /// Returns the content of a Wavefront `.obj` text as one mesh. Polygons are split into triangles,
 /// and coordinates are multiplied by `scale`. Ignores normals, textures, lines and points. `source`
-/// is the name for error messages. Error codes: bad_mesh, too_large.
+/// is the name for error messages. Error code: bad_mesh.
 Result<MeshShape> read_obj(const std::string& text, const std::string& source, Real scale);
 
 }  // namespace vat

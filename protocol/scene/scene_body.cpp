@@ -1,5 +1,5 @@
 #include "core/limits.h"
-#include "protocol/scene/obj_mesh.h"
+#include "protocol/scene/mesh_file.h"
 #include "protocol/scene/scene_parts.h"
 
 namespace vat::scene_parts {
@@ -93,12 +93,12 @@ MeshShape read_mesh_file(ObjectReader& reader, const MeshSource& meshes, Errors&
       add_error(errors, error.code, reader.path_of("file"), error.message);
     }
   };
-  const Result<std::string> text = meshes(file);
-  if (!text) {
-    report(text.errors());
+  const Result<std::string> bytes = meshes(file);
+  if (!bytes) {
+    report(bytes.errors());
     return mesh;
   }
-  Result<MeshShape> read = read_obj(text.value(), file, scale);
+  Result<MeshShape> read = read_mesh(bytes.value(), file, scale);
   if (!read) {
     report(read.errors());
     return mesh;

@@ -4,7 +4,7 @@
 #include <system_error>
 
 #include "protocol/json/printable.h"
-#include "protocol/scene/obj_mesh.h"
+#include "protocol/scene/mesh_file.h"
 #include "protocol/scene/scene_json.h"
 
 namespace vat {
@@ -54,7 +54,7 @@ MeshSource meshes_in_folder(std::string folder) {
       return Error{"bad_file_name", "",
                    printable(name) + ": must be a file below the scene's folder"};
     }
-    return read_file(fs::path(folder) / name, name, kMaxObjBytes);
+    return read_file(fs::path(folder) / name, name, kMaxMeshBytes);
   };
 }
 
