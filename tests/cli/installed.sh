@@ -14,7 +14,7 @@ fail() {
 # expect NAME EXPECTED ACTUAL
 expect() { [[ $2 == "$3" ]] || fail "$1: '$3', expected '$2'"; }
 
-cmake --install "$build" --prefix "$work/first" >"$work/log" || fail "$(<"$work/log")"
+cmake --install "$build" --prefix "$work/first" >"$work/log" 2>&1 || fail "$(<"$work/log")"
 mv "$work/first" "$work/moved"
 vat=$work/moved/bin/vat
 data=$work/moved/share/vat
@@ -33,8 +33,9 @@ for page in vat vat-serve vat-simulate; do
   [[ $manual == *".TH ${page^^} "* && $manual == *'.SH OPTIONS'* ]] || fail "manual of $page"
 done
 
-cmake -S "$sources/tests/cli/library" -B "$work/example" -DCMAKE_PREFIX_PATH="$work/moved" >"$work/log" &&
-  cmake --build "$work/example" >>"$work/log" || fail "$(<"$work/log")"
+cmake -G Ninja -S "$sources/tests/cli/library" -B "$work/example" \
+  -DCMAKE_PREFIX_PATH="$work/moved" >"$work/log" 2>&1 &&
+  cmake --build "$work/example" >>"$work/log" 2>&1 || fail "$(<"$work/log")"
 # Free fall: -9.81 / 2 * 0.5^2 m.
 expect "a program with the library" "after 0.5 s: -1.22625 m" "$("$work/example/fall")"
 
