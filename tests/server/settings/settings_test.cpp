@@ -66,6 +66,23 @@ TEST_F(Settings, ThePrintedSettingsAreAFile) {
   EXPECT_EQ(describe(table, sources).at("settings"), printed);
 }
 
+TEST_F(Settings, TheFileOfVariablesHasEachSettingAndIsValid) {
+  target.limits.max_clients_per_session = 77;
+  const std::string file = environment_file(table);
+  target = {};
+  std::vector<std::string> variables;
+  std::istringstream lines(file);
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_TRUE(line.empty() || line.starts_with('#')) << "the file sets nothing: " << line;
+    if (line.starts_with("#VAT_")) variables.push_back(line.substr(1));
+  }
+  EXPECT_EQ(variables.size(), table.size());
+  EXPECT_THAT(file, HasSubstr("(0 to 65535).\n#VAT_PORT=8080\n"));
+  std::erase_if(variables, [](const std::string& each) { return each.ends_with('='); });
+  ASSERT_TRUE(apply_environment(table, variables, sources));
+  EXPECT_EQ(target.limits.max_clients_per_session, 77U);
+}
+
 TEST_F(Settings, AnUnknownNameHasASuggestionAndTheList) {
   const Status applied = apply_text(R"({"max_conections": 3, "port": 5})");
   ASSERT_FALSE(applied);
