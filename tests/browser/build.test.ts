@@ -37,43 +37,46 @@ it.each([
   ['rigid', 'box', 0.12],
   ['deformable', 'sphere', 0.2],
   ['liquid', 'sphere', 0.2],
-] as const)('adds a %s %s where one clicks, undoes and redoes it', async (kind, shape, size) => {
-  await visit('sliding-vat-liquid');
-  const { page } = visits.viewer;
-  const block = (await bodyOf('jelly block'))!;
-  await visits.observer.request('world.remove_body', { body: block.body });
-  await page.waitForSelector('#bodies:not(:has-text("jelly block"))');
-  await visits.viewer.until('#view[data-tick]');
-  const before = await names();
-  await choose(kind, shape, size);
-  await page.click('#add-place:enabled');
-  await place();
-  const box = (await page.locator('#view').boundingBox())!;
-  await page.mouse.click(box.x + 0.3 * box.width, box.y + 0.38 * box.height); // the old position
-  await expect.poll(count, kInTime).toBe(before.length + 1);
-  await visits.viewer.until('#view:not([data-placing])');
-  const added = (await bodies()).at(-1)!;
-  expect(added.kind).toBe(kind);
-  const middle = [0, 1, 2].map(
-    (axis) => added.positions.reduce((sum, at) => sum + at[axis]!, 0) / added.positions.length,
-  );
-  const { vat } = (await visits.observer.request('session.join', {})).description;
-  const across = (middle[0]! - vat!.min[0]) / (vat!.max[0] - vat!.min[0]);
-  expect(across).toBeLessThan(0.5); // to the left, and high
-  expect(middle[2]!).toBeGreaterThan(vat!.min[2] + 0.4 * (vat!.max[2] - vat!.min[2]));
-  const note = (await page.textContent('#add-note')) ?? '';
-  const share = Number(/About (\d+)/.exec(note)?.[1]) / added.positions.length;
-  expect(share).toBeGreaterThan(0.5);
-  expect(share).toBeLessThan(2);
-  await page.click('#undo:enabled');
-  await expect.poll(names, kInTime).toEqual(before);
-  await page.waitForSelector('#redo:enabled');
-  await page.keyboard.press('Control+y');
-  await expect.poll(count, kInTime).toBe(before.length + 1);
-  await page.waitForSelector('#undo:enabled');
-  await page.keyboard.press('Control+z');
-  await expect.poll(names, kInTime).toEqual(before);
-});
+] as const)(
+  'adds a %s %s at the clicked place, undoes and redoes it',
+  async (kind, shape, size) => {
+    await visit('sliding-vat-liquid');
+    const { page } = visits.viewer;
+    const block = (await bodyOf('jelly block'))!;
+    await visits.observer.request('world.remove_body', { body: block.body });
+    await page.waitForSelector('#bodies:not(:has-text("jelly block"))');
+    await visits.viewer.until('#view[data-tick]');
+    const before = await names();
+    await choose(kind, shape, size);
+    await page.click('#add-place:enabled');
+    await place();
+    const box = (await page.locator('#view').boundingBox())!;
+    await page.mouse.click(box.x + 0.3 * box.width, box.y + 0.38 * box.height); // the old position
+    await expect.poll(count, kInTime).toBe(before.length + 1);
+    await visits.viewer.until('#view:not([data-placing])');
+    const added = (await bodies()).at(-1)!;
+    expect(added.kind).toBe(kind);
+    const middle = [0, 1, 2].map(
+      (axis) => added.positions.reduce((sum, at) => sum + at[axis]!, 0) / added.positions.length,
+    );
+    const { vat } = (await visits.observer.request('session.join', {})).description;
+    const across = (middle[0]! - vat!.min[0]) / (vat!.max[0] - vat!.min[0]);
+    expect(across).toBeLessThan(0.5); // to the left, and high
+    expect(middle[2]!).toBeGreaterThan(vat!.min[2] + 0.4 * (vat!.max[2] - vat!.min[2]));
+    const note = (await page.textContent('#add-note')) ?? '';
+    const share = Number(/About (\d+)/.exec(note)?.[1]) / added.positions.length;
+    expect(share).toBeGreaterThan(0.5);
+    expect(share).toBeLessThan(2);
+    await page.click('#undo:enabled');
+    await expect.poll(names, kInTime).toEqual(before);
+    await page.waitForSelector('#redo:enabled');
+    await page.keyboard.press('Control+y');
+    await expect.poll(count, kInTime).toBe(before.length + 1);
+    await page.waitForSelector('#undo:enabled');
+    await page.keyboard.press('Control+z');
+    await expect.poll(names, kInTime).toEqual(before);
+  },
+);
 
 it.each([
   ['rigid-stack', 'liquid', 'sphere', 'water'],
@@ -105,7 +108,7 @@ it.each([
   await expect.poll(count, kInTime).toBe(before + 1);
 });
 
-it('places by keys, and nothing where there is a body already', async () => {
+it('places bodies by keys, but not inside another body', async () => {
   await visit('rigid-stack');
   const { page } = visits.viewer;
   const before = await count();
@@ -211,7 +214,7 @@ const ball: SceneBody = {
   position: [0.8, 0.3, 0.8],
 };
 
-it('moves a body to where it has room and not into others, and undoes it', async () => {
+it('moves a body to a free place but not into others, and undoes it', async () => {
   await visit('rigid-stack');
   const { observer, viewer } = visits;
   await observer.request('scene.load', {

@@ -45,7 +45,7 @@ async function through(ways: Ways, look: Look = {}): Promise<{ page: Viewer; bet
 const isOpen = (page: Viewer): Promise<void> => page.until('#connection[data-state="open"]');
 const isWaiting = (page: Viewer): Promise<void> => page.until('#connection[data-state="waiting"]');
 
-it('says that an invitation is needed; viewers ask for control by what messages offer', async () => {
+it('shows that an invitation is needed; viewers request control with the button of the message', async () => {
   await serve('--access', 'token');
   const stranger = await open();
   await says(stranger, 'obstacle', 'this server needs an invitation');
@@ -72,7 +72,7 @@ it('says that an invitation is needed; viewers ask for control by what messages 
   await guest.until('#play[data-playing="false"]');
 });
 
-it('says that the server is full, and enters once it is not', async () => {
+it('shows that the server is full, and joins when a place is free', async () => {
   await serve('--max-connections', '1');
   const first = await open();
   await first.untilTick(0);
@@ -84,7 +84,7 @@ it('says that the server is full, and enters once it is not', async () => {
   expect(await second.page.isVisible('#hint')).toBe(true);
 });
 
-it('says that it was removed, or continues in another window, and comes back', async () => {
+it('shows that the participant was removed or continues in another window, and joins again', async () => {
   await serve();
   const first = await open();
   await first.untilTick(0);
@@ -113,7 +113,7 @@ it('says that it was removed, or continues in another window, and comes back', a
   await says(second, 'connection-text', 'continues in another window');
 });
 
-it('works with an older server, and says what that cannot do', async () => {
+it('works with an older server, and names the functions that it lacks', async () => {
   const { page } = await through({
     unknown: ['scene.get', 'session.saves', 'session.stats', 'replay.open', 'scene.save'],
   });
@@ -132,7 +132,7 @@ it('works with an older server, and says what that cannot do', async () => {
   expect(page.problems).toEqual([]);
 });
 
-it('tells a server that refuses it from one that is stopped', async () => {
+it('distinguishes a server that rejects it from a stopped server', async () => {
   const { page } = await through({ refuses: true });
   await says(page, 'connection-text', 'does not support vat.v1');
   expect(await page.page.isDisabled('#play')).toBe(true);
@@ -180,7 +180,7 @@ const fireTimers = ({ page }: Viewer): Promise<void> =>
     channel.close();
   });
 
-it('says that no picture comes while the connection is stuck, and goes on after that', async () => {
+it('shows that the connection is stuck, and continues afterwards', async () => {
   const { page, between } = await through({ worker: kTimers }, { before: controlClock });
   await page.untilTick(0);
   between.freeze(true);
@@ -199,7 +199,7 @@ it('says that no picture comes while the connection is stuck, and goes on after 
   await page.until('#view[data-tick]');
 });
 
-it('says that the server stops, that it is stopped, and goes on with the next', async () => {
+it('shows that the server stops, that it has stopped, and continues with the next server', async () => {
   await serve();
   const page = await open();
   await page.untilTick(0);
@@ -216,7 +216,7 @@ it('says that the server stops, that it is stopped, and goes on with the next', 
   await page.untilTick(0);
 });
 
-it('joins the session of its address, says when that is closed, and leads to another', async () => {
+it('joins the session of its address, shows that it was closed, and offers another session', async () => {
   await serve();
   const observer = await Observer.join(server.url);
   const scene = 'buoyancy';

@@ -39,7 +39,7 @@ async function inked(chart: number): Promise<number> {
     });
 }
 
-it('fetches what draws curves only once somebody looks at them', async () => {
+it('fetches the charting library when the section of curves is opened', async () => {
   const fetched = (): Promise<number> =>
     viewer.page.evaluate(
       () =>
@@ -52,7 +52,7 @@ it('fetches what draws curves only once somebody looks at them', async () => {
   expect(await fetched()).toBeGreaterThan(0);
 });
 
-it('draws a line for each, which goes on as the session does', async () => {
+it('draws a line for each curve, which grows while the session plays', async () => {
   await viewer.page.waitForFunction(() =>
     [...document.querySelectorAll<HTMLElement>('.chart')].every(
       ({ dataset }) => Number(dataset.samples) >= 4,
@@ -75,7 +75,7 @@ it('draws energies, momentum and density that the server measures', async () => 
   expect(text).toMatch(/motion [\d.e]+ J/);
 });
 
-it('tells what a tick is spent on', async () => {
+it('shows the computing time of a tick by stage', async () => {
   await viewer.page.waitForSelector('#stage-bar > i');
   const words = (await viewer.page.textContent('#stage-words')) ?? '';
   expect(words).toMatch(/A tick takes [\d.]+ ms of the 20 ms that it may take, so/);
@@ -85,7 +85,7 @@ it('tells what a tick is spent on', async () => {
   expect(viewer.problems).toEqual([]);
 });
 
-it('begins anew with another scene', async () => {
+it('clears the curves for another scene', async () => {
   await observer.request('control.pause', {});
   await observer.request('scene.load', { scene: 'dam-break' });
   // One sample: the figures at the start of the scene.

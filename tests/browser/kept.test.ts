@@ -30,7 +30,7 @@ async function pressTwice(remove: Locator): Promise<void> {
   });
 }
 
-it('goes back to a moment that was saved, and deletes it at the second press', async () => {
+it('restores a saved state, and deletes it at the second click', async () => {
   await visits.observer.request('control.step', { ticks: 20 });
   await save('states', 'before the fall');
   const { hash } = await visits.observer.request('session.hash', {});
@@ -92,7 +92,7 @@ async function seek(share: number): Promise<void> {
     }, share);
 }
 
-it('shows what happened again: seeks, plays, tells who was there, and comes back', async () => {
+it('replays a session: seeks, plays, lists the participants, and returns', async () => {
   await live();
   await visits.viewer.page.click('#recording-watch');
   await visits.viewer.page.waitForSelector('#replay:not([hidden])');
@@ -135,7 +135,7 @@ it('downloads a recording, and shows it when it is opened as a file', async () =
   await expect.poll(position, kInTime).toBeGreaterThan(100);
 });
 
-it('says why a file is no recording', async () => {
+it('shows the fault of a file that is not a recording', async () => {
   await visits.viewer.page.setInputFiles('#recording-input', {
     name: 'broken.vatrec',
     mimeType: 'application/octet-stream',

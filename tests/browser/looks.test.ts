@@ -77,7 +77,7 @@ const changeFrom = async (picture: string): Promise<number> =>
 describe('the dam break at its start', () => {
   stayAt('dam-break', 0);
 
-  it('is drawn as splats where the processor draws, which is said', async () => {
+  it('is drawn as splats without a graphics card, with a notice', async () => {
     expect(await visits.viewer.said('liquid')).toBe('splats');
     expect(await textOf('view-notice')).toContain('without a graphics card');
   });
@@ -208,7 +208,7 @@ describe('marks over a scene, at full resolution', () => {
   });
 });
 
-it('points arrows where the liquid goes', async () => {
+it('points arrows in the direction of the liquid', async () => {
   await visit('dam-break', 5, 'liquid:particles');
   const kFalling = { left: 0.1, top: 0.42, right: 0.25, bottom: 0.5 };
   const darker = async (): Promise<number> => {
@@ -273,7 +273,7 @@ async function hues(): Promise<number> {
   return [...seen.values()].filter((count) => count > 10).length;
 }
 
-it('tells bodies or their kinds by colours, which need no legend', async () => {
+it('distinguishes bodies or their kinds by colours without a legend', async () => {
   await visit('rigid-stack', 0, 'colour:body,solids:particles');
   expect(await visits.viewer.page.isVisible('#colour-legend')).toBe(false);
   await visits.viewer.stillPicture();
@@ -310,7 +310,7 @@ it('draws springs by their strain, and gives the greatest strain', async () => {
   await expect.poll(() => changeFrom(without), kInTime).toBeLessThan(kSame);
 });
 
-it('moves between frames, and tells how much later it is', async () => {
+it('interpolates between frames, and shows the delay', async () => {
   await visit('dam-break', 0, 'smooth:on,liquid:particles');
   await visits.observer.request('control.play', {});
   await visits.viewer.untilTick(10);

@@ -41,7 +41,7 @@ const kShipped = [
   'water-drop',
 ];
 
-it.each(kShipped)('what is new to %s is as steady as what is there', async (name) => {
+it.each(kShipped)('new bodies with %s are as steady as earlier ones', async (name) => {
   for (const kind of ['liquid', 'deformable', 'rigid'] as const) {
     await observer.request('scene.load', { scene: name });
     await observer.request('control.pause', {});

@@ -73,7 +73,7 @@ it('changes the appearance of a material, which is drawn, and restores it', asyn
   await expect.poll(changed, kInTime).toBeLessThan(20);
 });
 
-it('changes what happens where two materials meet, and restores it', async () => {
+it('changes the interface of two materials, and restores it', async () => {
   await visit('rigid-stack');
   const { page } = visits.viewer;
   const before = (await visits.scene()).default_interface as { stiffness: number };
@@ -123,7 +123,7 @@ it('changes integrator and time step, and restores them', async () => {
   await expect.poll(numerics, kInTime).toMatchObject({ step: 0.001 });
 });
 
-it('says why an integrator is refused', async () => {
+it('shows the reason for the rejection of an integrator', async () => {
   await visit('brick-wall');
   const { page } = visits.viewer;
   await page.selectOption('#integrator', 'runge_kutta_4');
@@ -156,7 +156,7 @@ it('tilts gravity with the ball, and restores it', async () => {
   await expect.poll(gravity, kInTime).toEqual([0, 0, -9.81]);
 });
 
-it('slides the vat by hand; released, it goes back', async () => {
+it('slides the vat by hand; after the release, the vat returns', async () => {
   await visit('dam-break');
   const { vat } = (await visits.observer.request('session.join', {})).description;
   await drag('#slide', 0.48);

@@ -23,7 +23,7 @@ it('loads a scene that is chosen by its picture', async () => {
   expect(await page.isVisible('#gallery')).toBe(false);
 });
 
-it('loads a scene file that is dropped on it, and says why a file is refused', async () => {
+it('loads a dropped scene file, and shows the fault of an invalid file', async () => {
   await visits.visit('rigid-stack');
   const { page } = visits.viewer;
   const drop = (name: string, text: string): Promise<void> =>
@@ -48,7 +48,7 @@ it('loads a scene file that is dropped on it, and says why a file is refused', a
   expect(session!.scene).toBe('dropped');
 });
 
-it('shows who is here by name, where they point, and what they hold', async () => {
+it('shows the participants by name, their pointers, and their grabbed bodies', async () => {
   await visits.visit('rigid-stack');
   const { observer, viewer } = visits;
   await unfold(viewer, 'people-details');
@@ -81,7 +81,7 @@ it('shows who is here by name, where they point, and what they hold', async () =
     .toContainEqual(expect.objectContaining({ name: 'Bob', role: 'controller' }));
 });
 
-it('gives control to a viewer who asks for it', async () => {
+it('gives control to a viewer that requests it', async () => {
   // A separate session: its owner admits others as viewers only.
   const owner = await Observer.join(visits.server.url);
   const { session } = await owner.request('session.create', { name: 'ours', scene: 'rigid-stack' });

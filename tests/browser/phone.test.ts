@@ -4,7 +4,7 @@ import { kInTime, kPhone, says, unfold, Visits } from './support/visits';
 /** The page on a phone: the sheet with the controls, and the sensors. */
 const visits = new Visits();
 
-it('leaves room for the picture beside the sheet, whose forms are as wide as the page', async () => {
+it('reserves space for the picture beside the sheet, whose forms have the width of the page', async () => {
   await visits.visit('sliding-vat-liquid', kPhone);
   const { page } = visits.viewer;
   const height = async (): Promise<number> => (await page.locator('#view').boundingBox())!.height;

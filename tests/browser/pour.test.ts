@@ -4,7 +4,7 @@ import { kInTime, Visits } from './support/visits';
 /** Pouring liquid: drops, and taps of a scene. */
 const visits = new Visits();
 
-it('pours drops below the top, each where there is room', async () => {
+it('pours drops below the top, each at a free place', async () => {
   await visits.visit('dam-break');
   const { page } = visits.viewer;
   const bodies = async () => (await visits.observer.request('state.query', {})).bodies;
@@ -49,7 +49,7 @@ it('opens and closes the taps of a scene', async () => {
   await expect.poll(async () => (await isOpen()) ?? true, kInTime).toBe(true);
 });
 
-it('has nothing to pour where there is no liquid', async () => {
+it('disables pouring in scenes without a liquid', async () => {
   await visits.visit('rigid-stack');
   expect(await visits.viewer.page.isVisible('#pour-row')).toBe(false);
 });

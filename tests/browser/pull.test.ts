@@ -158,7 +158,7 @@ it('holds a body by keys, pulls it, and releases it', async () => {
   await expect.poll(grabs, kInTime).toEqual([]);
 });
 
-it('tells place, density and mass of the particle that is clicked', async () => {
+it('shows position, density and mass of the clicked particle', async () => {
   await visits.visit('rigid-stack');
   const { viewer, observer } = visits;
   await viewer.clickParticle();

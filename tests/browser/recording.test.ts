@@ -38,7 +38,7 @@ it('plays a file, seeks, and returns to the session', async () => {
   expect(await page.isDisabled('#share-open')).toBe(false);
 });
 
-it('says why a file is not shown, and the session continues', async () => {
+it('shows the fault of an invalid file, and the session continues', async () => {
   await visits.visit('rigid-stack');
   const { page } = visits.viewer;
   await open(readFileSync(kFile).subarray(0, 700));

@@ -16,7 +16,7 @@ async function velocityOf(body: number): Promise<number[]> {
   );
 }
 
-it('pushes a body to where the pointer is released', async () => {
+it('pushes a body towards the point of release', async () => {
   await visits.visit('rigid-stack');
   const { viewer } = visits;
   const { page } = viewer;

@@ -51,7 +51,7 @@ it('names a scene from outside of the catalogue', async () => {
   expect(await viewer.page.locator('#scene').textContent()).not.toContain('My scene');
 });
 
-it('shows what the server refuses', async () => {
+it('shows the rejections of the server', async () => {
   await visits.visit('rigid-stack');
   const { page } = visits.viewer;
   await page.evaluate(() => {
@@ -62,7 +62,7 @@ it('shows what the server refuses', async () => {
   await expect.poll(() => page.inputValue('#scene'), kInTime).toBe('rigid-stack');
 });
 
-it('leaves keys to the picker while a scene is picked, and takes them elsewhere', async () => {
+it('passes keys to the open list of scenes, and handles them elsewhere', async () => {
   await visits.visit('dam-break');
   const { observer, viewer } = visits;
   const tick = await observer.tick();
@@ -96,7 +96,7 @@ it('draws again once the browser gives the graphics back', async () => {
   await expect.poll(changed, kInTime).toBeLessThan(20);
 });
 
-it('says that its session was closed, and goes to the one that is left', async () => {
+it('shows that its session was closed, and joins the remaining session', async () => {
   await visits.visit('rigid-stack');
   const { observer, viewer } = visits;
   const [first] = (await observer.request('session.list', {})).sessions;

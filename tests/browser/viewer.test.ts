@@ -73,7 +73,7 @@ it('shows a liquid that moves in a vat at rest', async () => {
   expect(await viewer.difference(before, await viewer.picture())).toBeGreaterThan(kMovement);
 });
 
-it('stands still when paused with the space bar', async () => {
+it('pauses with the space bar', async () => {
   await viewer.page.keyboard.press('Space');
   const tick = await untilPaused();
   const before = await viewer.stillPicture();
@@ -120,7 +120,7 @@ it('pulls a body with the mouse', async () => {
   await viewer.until('#view:not([data-held-body])');
 });
 
-it('comes back by itself after the server was killed and started again', async () => {
+it('reconnects after the server was killed and started again', async () => {
   observer.leave();
   viewer.serverIsAway = true;
   await server.kill();

@@ -23,7 +23,7 @@ async function open(look: Look = {}, url = sharedServer.url): Promise<Viewer> {
   return page;
 }
 
-it('says what is missing where the browser has no WebGL', async () => {
+it('shows that the browser has no WebGL', async () => {
   const page = await open({
     before: (page) =>
       page.addInitScript(() => {
@@ -33,7 +33,7 @@ it('says what is missing where the browser has no WebGL', async () => {
   await says(page, 'obstacle', 'WebGL 2');
 });
 
-it('says that a part of the page was not loaded', async () => {
+it('shows that a part of the page was not loaded', async () => {
   const page = await open({
     before: (page) => page.route('**/stream.worker*.js', (route) => route.abort()),
   });
@@ -53,7 +53,7 @@ function differingRecording(): Buffer {
   return found;
 }
 
-it('says where a replay differs from its recording, and how to go on', async () => {
+it('shows the tick at which a replay differs from its recording, and the next action', async () => {
   const page = await open();
   await page.until('#connection[data-state="open"]');
   await page.page.setInputFiles('#recording-input', {
@@ -71,7 +71,7 @@ it('says where a replay differs from its recording, and how to go on', async () 
   await page.until('#replay-words[data-diverged="false"]');
 });
 
-it('says that a server without a folder records nothing, and how it would', async () => {
+it('shows that a server without a data folder records nothing, and the option', async () => {
   const page = await open();
   await page.until('#connection[data-state="open"]');
   await page.page.click('#kept-details > summary');
@@ -79,7 +79,7 @@ it('says that a server without a folder records nothing, and how it would', asyn
   expect(await page.page.isDisabled('#recording-watch')).toBe(true);
 });
 
-it('says that it is slow while it plays, and shows all once it stands still', async () => {
+it('shows that the page is slow while the session plays, and shows all particles when it pauses', async () => {
   const observer = await Observer.join(sharedServer.url);
   await observer.request('scene.load', { scene: 'dam-break' });
   await observer.request('control.play', {});
@@ -110,7 +110,7 @@ function alter(file: string, command: string): void {
   if (status !== 0) throw new Error(stderr.toString());
 }
 
-it('says that a session was not restored as it was, and goes on after a reset', async () => {
+it('shows that a session was restored with other bits, and continues after a reset', async () => {
   const data = mkdtempSync(join(tmpdir(), 'vat-words-'));
   const server = new Server(['--data', data, '--scene', 'rigid-stack']);
   try {

@@ -62,7 +62,7 @@ describe('states', () => {
     expect(states).toEqual([{ name: 'connecting' }, { name: 'open' }]);
   });
 
-  it('waits and comes back after a break', () => {
+  it('waits and reconnects after an interruption', () => {
     openLine().break();
     const waiting = { name: 'waiting', reason: 'the server cannot be reached', retryMs: 100 };
     expect(states.at(-1)).toEqual(waiting);
@@ -85,7 +85,7 @@ describe('states', () => {
     [1013, '', 'the server has too many connections'],
     [4008, 'queue full', 'this client is too slow: queue full'],
     [4999, '', 'close code 4999'],
-  ])('says close code %i "%s" in words', (code, reason, words) => {
+  ])('describes close code %i "%s"', (code, reason, words) => {
     openLine().break({ code, reason });
     expect(states.at(-1)).toMatchObject({ name: 'waiting', reason: words });
   });
@@ -109,7 +109,7 @@ describe('states', () => {
     expect(states.at(-1)).toMatchObject({ retryMs: 100 });
   });
 
-  it('goes on waiting longer while the server accepts and drops the line at once', () => {
+  it('increases the delay while the server accepts and closes connections immediately', () => {
     openLine().break();
     vi.advanceTimersByTime(100);
     FakeSocket.newest.accept();
@@ -126,7 +126,7 @@ describe('states', () => {
     expect(FakeSocket.made).toHaveLength(2);
   });
 
-  it('stays away once closed', () => {
+  it('stays closed', () => {
     const socket = openLine();
     connection.close();
     socket.break();
@@ -142,7 +142,7 @@ describe('states', () => {
     expect(events).toEqual([]);
   });
 
-  it('gives up a dead line when told to', () => {
+  it('abandons a dead connection on request', () => {
     const socket = openLine();
     connection.restart('no answer');
     expect(socket.closed).toBe(true);
@@ -150,7 +150,7 @@ describe('states', () => {
   });
 });
 
-describe('a line that does not open', () => {
+describe('a connection that does not open', () => {
   const refused = 'the server does not support vat.v1; reload the page';
 
   async function breakWithProbe(probe: () => Promise<boolean>): Promise<void> {
@@ -165,7 +165,7 @@ describe('a line that does not open', () => {
   const after = (ms: number, answer: boolean) => (): Promise<boolean> =>
     new Promise((resolve) => setTimeout(resolve, ms, answer));
 
-  it('is refused where the server answers otherwise, and is tried again as planned', async () => {
+  it('is rejected if the server replies without an upgrade, and is tried again as planned', async () => {
     await breakWithProbe(after(30, true));
     expect(states.at(-1)).toEqual({ name: 'waiting', reason: refused, retryMs: 70 });
     await vi.advanceTimersByTimeAsync(69);
@@ -174,7 +174,7 @@ describe('a line that does not open', () => {
     expect(FakeSocket.made).toHaveLength(2);
   });
 
-  it('leads to nobody where the server does not answer at all', async () => {
+  it('is unreachable if the server does not reply', async () => {
     await breakWithProbe(after(10, false));
     expect(states.map(({ name }) => name)).toEqual(['connecting', 'waiting']);
     expect(states.at(-1)).toMatchObject({ reason: 'the server cannot be reached' });
@@ -209,7 +209,7 @@ describe('default delay before a retry', () => {
 });
 
 describe('requests', () => {
-  it('leaves params out where there are none', () => {
+  it('omits empty params', () => {
     const socket = openLine();
     connection.request('control.play', {}).catch(() => undefined);
     connection.notify('frames.ack', { number: 7 });
@@ -229,7 +229,7 @@ describe('requests', () => {
     expect(await step).toEqual({ tick: 13 });
   });
 
-  it('rejects with what the server says', async () => {
+  it('rejects with the error of the server', async () => {
     const socket = openLine();
     const reply = connection.request('world.remove_body', { body: 9 });
     const data = { kind: 'no_such_body', path: '/body' };
@@ -242,7 +242,7 @@ describe('requests', () => {
     });
   });
 
-  it('rejects where no answer comes in time, and takes a late one without a word', async () => {
+  it('rejects if no reply arrives in time, and ignores a late reply', async () => {
     const socket = openLine();
     const reply = connection.request('session.hash', {});
     const rejected = expect(reply).rejects.toMatchObject({
@@ -255,7 +255,7 @@ describe('requests', () => {
     expect(faults).toEqual([]);
   });
 
-  it('rejects what is not answered when the line breaks', async () => {
+  it('rejects open requests when the connection breaks', async () => {
     const socket = openLine();
     const reply = connection.request('control.play', {});
     const rejected = expect(reply).rejects.toMatchObject({ kind: 'disconnected' });
@@ -263,7 +263,7 @@ describe('requests', () => {
     await rejected;
   });
 
-  it('rejects at once while the line is down', async () => {
+  it('rejects immediately without a connection', async () => {
     connection.open();
     const reply = connection.request('control.play', {});
     await expect(reply).rejects.toMatchObject({ kind: 'disconnected' });
@@ -302,7 +302,7 @@ describe('messages', () => {
     ['a refusal without id', '{"id":null,"error":{"code":-32700,"message":"no JSON"}}', 'no JSON'],
     ['a stray reply', '{"id":null,"result":1}', 'a reply without a request'],
     ['other data', 5, 'a message that is neither text nor bytes'],
-  ])('reports %s and goes on', (_, data, fault) => {
+  ])('reports %s and continues', (_, data, fault) => {
     const socket = openLine();
     socket.receive(data);
     expect(faults).toEqual([fault]);

@@ -74,7 +74,7 @@ describe('the error of positions', () => {
     bodies: radii.map((radius) => ({ ...kBody, radius })),
   });
 
-  it('is a share of the least radius, and asked for again where that changes', async () => {
+  it('is a fraction of the smallest radius, and is requested again if the radius changes', async () => {
     session = newSession(undefined, undefined, 0.5);
     session.open();
     const socket = FakeSocket.newest;
@@ -133,7 +133,7 @@ describe('a server that asks for a token', () => {
     expect(descriptions).toHaveLength(2);
   });
 
-  it('is shown what was given where who we were is forgotten', async () => {
+  it('receives the given token if the identity is forgotten', async () => {
     session = newSession(undefined, undefined, undefined, { token: kToken, resume: kResume });
     session.open();
     const socket = await knock();
@@ -144,7 +144,7 @@ describe('a server that asks for a token', () => {
     expect(descriptions).toHaveLength(1);
   });
 
-  it('is told of in words where there is none to show', async () => {
+  it('is described in words if there is no token', async () => {
     session.open();
     const socket = await knock();
     expect(shown(socket)).toEqual([]);
@@ -152,7 +152,7 @@ describe('a server that asks for a token', () => {
     expect(states.at(-1)).toBe('waiting');
   });
 
-  it.each([4003, 4010])('that closes with %i is left alone', async (code) => {
+  it.each([4003, 4010])('is not contacted again after close code %i', async (code) => {
     session.open();
     const socket = await enter();
     socket.break({ code, reason: '' });
@@ -191,7 +191,7 @@ describe('entering', () => {
     expect(descriptions).toHaveLength(2);
   });
 
-  it('begins again on a new line where the server refuses to let it in', async () => {
+  it('uses a new connection if the server rejects the join', async () => {
     session.open();
     const socket = FakeSocket.newest;
     socket.accept();
@@ -205,7 +205,7 @@ describe('entering', () => {
     expect(descriptions).toHaveLength(1);
   });
 
-  it('enters anew when its session is closed', async () => {
+  it('joins again when its session is closed', async () => {
     session.open();
     const socket = await enter();
     const params = { session: 's1', reason: 'closed by a client' };
@@ -224,7 +224,7 @@ describe('while it is in', () => {
     expect(descriptions.map(({ epoch }) => epoch)).toEqual([2, 3]);
   });
 
-  it('decodes frames and acknowledges them when told to', async () => {
+  it('decodes frames and acknowledges them on request', async () => {
     session.open();
     const socket = await enter();
     const bytes = goldenBytes('v2-key');
@@ -237,7 +237,7 @@ describe('while it is in', () => {
     expect(socket.sent.at(-1)).not.toHaveProperty('id');
   });
 
-  it('reports a frame that cannot be read, asks for a key frame and goes on', async () => {
+  it('reports an invalid frame, requests a key frame and continues', async () => {
     session.open();
     const socket = await enter();
     socket.receive(new ArrayBuffer(10));
@@ -267,7 +267,7 @@ describe('while it is in', () => {
     expect(faults).toHaveLength(2);
   });
 
-  it('begins again on a new line where the key frame cannot be read either', async () => {
+  it('uses a new connection if the key frame is invalid too', async () => {
     session.open();
     const socket = await enter();
     socket.receive(new ArrayBuffer(10));
@@ -285,7 +285,7 @@ describe('while it is in', () => {
     expect(given.header.number).toBe(10);
   });
 
-  it('asks for no frames while nobody watches', async () => {
+  it('requests no frames while the page is hidden', async () => {
     session.open();
     const socket = await enter();
     session.watch(false);
@@ -296,7 +296,7 @@ describe('while it is in', () => {
     expect(socket.methods.slice(3)).toEqual(['frames.unsubscribe', 'frames.subscribe']);
   });
 
-  it('enters without a subscription where nobody watches, and subscribes later', async () => {
+  it('joins without a subscription while the page is hidden, and subscribes later', async () => {
     session.watch(false);
     session.open();
     const socket = FakeSocket.newest;
@@ -315,7 +315,7 @@ describe('while it is in', () => {
     expect(socket.methods.filter((method) => method === 'server.info')).toHaveLength(2);
   });
 
-  it('gives up a line on which the server answers no more', async () => {
+  it('abandons a connection without replies', async () => {
     session.open();
     await enter();
     vi.advanceTimersByTime(5000);
@@ -325,7 +325,7 @@ describe('while it is in', () => {
 });
 
 describe('going to another session', () => {
-  it('joins it by the same line, as somebody new, and comes back to it after a break', async () => {
+  it('joins it over the same connection as a new participant, and rejoins after an interruption', async () => {
     session = newSession(undefined, undefined, undefined, { resume: 'a'.repeat(22) });
     session.open();
     const socket = await enter();

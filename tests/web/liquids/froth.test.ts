@@ -87,7 +87,7 @@ it('fades with simulated time, and is the same while the scene is paused', () =>
   expect(foam(1.5 * Math.sqrt((2 * kHeight) / 9.81))).toBeCloseTo(Math.exp(-1), 2);
 });
 
-it('is forgotten if the time goes back, and with the scene', () => {
+it('is removed if the time decreases, and with the scene', () => {
   for (const forget of [
     (scene: Scene) => scene.froth.clear(),
     (scene: Scene) => scene.follow(-1),

@@ -20,7 +20,7 @@ describe('Flight', () => {
   const to = poseAt([-4, -0.2, 0.1], [0, 1, 0]);
   const flight = new Flight(from, to, 10);
 
-  it('goes from one pose to the other', () => {
+  it('moves from one pose to the other', () => {
     expect(flight.poseAt(10).eye.distanceTo(from.eye)).toBeLessThan(1e-9);
     expect(flight.isOver(10 + 0.9 * kFlightSeconds)).toBe(false);
     expect(flight.isOver(10.001 + kFlightSeconds)).toBe(true);

@@ -103,7 +103,7 @@ describe('a tilt in the view', () => {
       [0, 1],
       [-1, 0],
     ],
-  ])('of a camera along %s leans right along %s and away along %s', (look, right, away) => {
+  ])('of a camera along %s tilts to the right along %s and away along %s', (look, right, away) => {
     const parts = leanInView(10, 20, new Vector3(...look));
     expect(parts.map(({ degrees }) => degrees)).toEqual([10, 20]);
     const [a, b] = parts.map(({ along }) => along.map((x) => x + 0));

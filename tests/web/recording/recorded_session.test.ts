@@ -107,7 +107,7 @@ describe('a recording in place of a session', () => {
     expect(ticks).toEqual([0, 1, 2, 3]);
   });
 
-  it('pauses, goes on by single frames, and seeks', async () => {
+  it('pauses, advances by single frames, and seeks', async () => {
     await begin();
     await session.request('control.pause', {});
     await pass(1);

@@ -121,7 +121,7 @@ describe('Appearance', () => {
     expect(wood).toEqual({ name: 'wood', density: 600 });
   });
 
-  it('is plain if the description has none', () => {
+  it('is plain if the description has no appearance', () => {
     expect(lookOf(undefined)).toMatchObject({ metalness: 0, opacity: 1, finish: 0 });
   });
 });

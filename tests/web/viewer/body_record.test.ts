@@ -20,7 +20,7 @@ const stateOf = (count: number): BodyState => ({
   velocities: Array.from({ length: count }, () => [0, 0, -1]),
 });
 
-describe('a body as it was', () => {
+describe('the record of a body', () => {
   it('has its particles, and their velocities', () => {
     const state = stateOf(3);
     const { positions, velocities } = state;
@@ -30,7 +30,7 @@ describe('a body as it was', () => {
     });
   });
 
-  it('has its pose where it is rigid, however large', () => {
+  it('has the pose of a rigid body of any size', () => {
     const pose = {
       center_of_mass: at(1),
       orientation: [0, 1, 0, 0] as [number, number, number, number],
@@ -45,7 +45,7 @@ describe('a body as it was', () => {
     });
   });
 
-  it('is of particles where some have come or gone', () => {
+  it('lists the particles if some were added or removed', () => {
     const body: SceneBody = { ...made, kind: 'liquid', velocity: [1, 0, 0] };
     const state = stateOf(2);
     const { positions, velocities } = state;
@@ -59,7 +59,7 @@ describe('a body as it was', () => {
     expect(recordOf(elsewhere, body, state).record.body).toBe(body);
   });
 
-  it('is where it was, but not bent, where a message cannot hold it', () => {
+  it('has the position but no deformation if a message is too small for it', () => {
     expect(recordOf(scene, made, stateOf(kMostParticles)).isWhole).toBe(true);
     const { record, isWhole } = recordOf(scene, made, stateOf(kMostParticles + 1));
     expect(isWhole).toBe(false);

@@ -62,7 +62,7 @@ describe('BodyView', () => {
     }
   });
 
-  it('names particles by their numbers, where some are missing', () => {
+  it('names particles by their numbers if some are missing', () => {
     const view = liquid(4);
     view.showGrid({ ...block(3), numbers: Uint32Array.of(1, 4, 9) }, header);
     expect(pickAt(view, 2)).toBe(9);

@@ -106,7 +106,7 @@ describe('Edits', () => {
     expect(edits.toRedo).toBeUndefined();
   });
 
-  it('forgets what cannot be undone any more', async () => {
+  it('removes edits that cannot be undone any more', async () => {
     const log: string[] = [];
     const edits = new Edits(() => undefined);
     edits.add(made(log, 'a'));
@@ -116,7 +116,7 @@ describe('Edits', () => {
   });
 });
 
-describe('what is added', () => {
+describe('an added body', () => {
   const scene = {
     materials: [
       { name: 'water', liquid: { stiffness: 1, viscosity: 1, support_radius: 0.12 } },
@@ -139,7 +139,7 @@ describe('what is added', () => {
     ]);
   });
 
-  it('has the spacing of what is alike, or what suits its liquid', () => {
+  it('has the spacing of similar bodies, or a spacing for its liquid', () => {
     expect(spacingFor(scene, 'rigid', 'wood')).toBe(0.04);
     expect(spacingFor(scene, 'deformable', 'another')).toBe(0.05);
     expect(spacingFor(scene, 'liquid', 'water')).toBeCloseTo(0.06);
@@ -233,7 +233,7 @@ describe('meshes from files', () => {
     ['a.stl', '', 'no triangles'],
     ['a.obj', 'v 1 1 1\nf 1 1 1', 'a single point'],
     ['a.obj', `v 0 0 0\nv 1 0 0\nv 0 1 0\n${'f 1 2 3\n'.repeat(30_000)}`, 'too many triangles'],
-  ])('that are none or too many are told: %s, %#', async (name, text, words) => {
+  ])('are rejected if they are empty or too large: %s, %#', async (name, text, words) => {
     const read = await readMesh(fileOf(name, text));
     expect('fault' in read && read.fault).toContain(words);
   });

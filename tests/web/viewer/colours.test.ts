@@ -54,7 +54,7 @@ describe('AutoRange', () => {
     expect(range.range.max).toBeCloseTo(3, 3);
   });
 
-  it('has a width where all values are the same, or there are none', () => {
+  it('has a width for equal values and without values', () => {
     const range = new AutoRange(false);
     range.add({ min: Infinity, max: -Infinity });
     expect(range.range).toEqual({ min: 0, max: 1 });
@@ -62,7 +62,7 @@ describe('AutoRange', () => {
     expect(range.range).toEqual({ min: 4.5, max: 5.5 });
   });
 
-  it('keeps 0 in the middle of a diverging map, where both signs are', () => {
+  it('has 0 in the middle of a diverging map if both signs occur', () => {
     const range = new AutoRange(true);
     range.add({ min: -1, max: 4 });
     expect(range.range).toEqual({ min: -4, max: 4 });
@@ -90,12 +90,12 @@ describe('numbers', () => {
   });
 });
 
-describe('the plane that cuts away', () => {
+describe('the cutting plane', () => {
   const box = new Box3(new Vector3(0, 0, 0), new Vector3(2, 4, 8));
   const isSeen = (plane: Vector4, x: number, y: number, z: number): boolean =>
     plane.x * x + plane.y * y + plane.z * z <= plane.w;
 
-  it('lies across the box where it is told', () => {
+  it('crosses the box at the given position', () => {
     const plane = new Vector4();
     setClipPlane(plane, { clip: 'y', clipAt: 0.25, clipOther: false }, box);
     expect(isSeen(plane, 1, 0.9, 1)).toBe(true);
@@ -108,7 +108,7 @@ describe('the plane that cuts away', () => {
     expect(isSeen(plane, 1, 1, 4.1)).toBe(false);
   });
 
-  it('cuts nothing where there is none', () => {
+  it('cuts nothing if it is off', () => {
     const plane = new Vector4();
     setClipPlane(plane, { clip: 'off', clipAt: 0, clipOther: false }, box);
     expect(isSeen(plane, 99, 99, 99)).toBe(true);

@@ -22,10 +22,10 @@ function stats(ticks: number, seconds: number, stages: Record<string, number>): 
   };
 }
 
-describe('what ticks are spent on', () => {
+describe('the computing time of ticks', () => {
   const before = stats(10, 1, { find_pairs: 0.5, kick: 0.5 });
 
-  it('is what was added since the last look, per tick, the most first', () => {
+  it('is the increase since the last look, per tick, in descending order', () => {
     const now = stats(20, 1.4, {
       find_pairs: 0.6,
       sort_liquid: 0.1,
@@ -49,7 +49,7 @@ describe('what ticks are spent on', () => {
     expect(seconds).toBeCloseTo(0.1);
   });
 
-  it('is nothing where no tick was run', () => {
+  it('is empty without ticks', () => {
     expect(profileBetween(before, before)).toBeUndefined();
   });
 
@@ -58,7 +58,7 @@ describe('what ticks are spent on', () => {
     expect(parts[0]!.words).toBe('other work');
   });
 
-  it('is said in words, and whether it is enough', () => {
+  it('is described in words, with the available time', () => {
     const profile = profileBetween(undefined, stats(10, 0.1, { find_pairs: 0.09, kick: 0.01 }))!;
     expect(profileInWords(profile, 0.02, 1)).toBe(
       'A tick takes 10 ms of the 20 ms that it may take, so the speed is reached. The largest part is finding neighbours: 90 %.',
@@ -68,7 +68,7 @@ describe('what ticks are spent on', () => {
 });
 
 describe('History', () => {
-  it('adds to the same time, leaves gaps, and begins anew where time goes back', () => {
+  it('merges values of one time, has gaps, and restarts if the time decreases', () => {
     const history = new History(['a', 'b']);
     history.add(1, { a: 1 });
     history.add(1, { b: 2 });
@@ -83,7 +83,7 @@ describe('History', () => {
     expect(history.columns(['a', 'b'])).toEqual([[0.5], [4], [null]]);
   });
 
-  it('keeps the beginning and the newest however long it goes', () => {
+  it('keeps the first and the newest values for any duration', () => {
     const history = new History(['a']);
     for (let n = 0; n < 5000; ++n) history.add(n, { a: n });
     const [times, values] = history.columns(['a']);

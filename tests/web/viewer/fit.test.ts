@@ -56,7 +56,7 @@ describe('firstDirection', () => {
     expect(directionTo(width, depth).distanceTo(directionOf('corner'))).toBeLessThan(1e-12);
   });
 
-  it('is nearer to the front for shallower scenes, and never from the front alone', () => {
+  it('is nearer to the front for shallower scenes, and never exactly from the front', () => {
     const depths = [2, 1, 0.8, 0.4, 0];
     const turns = depths.map((depth) => -directionTo(2, depth).y);
     expect(turns).toEqual([...turns].sort((a, b) => a - b));

@@ -79,7 +79,7 @@ describe('Held', () => {
     expect(asked.map(({ method }) => method)).toEqual(['grab.start', 'grab.move', 'grab.end']);
   });
 
-  it('tells from time to time that it still holds, until it ends', async () => {
+  it('repeats its state periodically until it ends', async () => {
     const held = hold();
     vi.advanceTimersByTime(kRenewal);
     expect(asked).toHaveLength(1);
@@ -102,7 +102,7 @@ describe('Held', () => {
     expect(vi.getTimerCount()).toBe(0);
   });
 
-  it('tells nothing more once the server has refused', async () => {
+  it('sends nothing after a rejection', async () => {
     hold();
     await asked[0]?.reject(new Error('no such body'));
     vi.advanceTimersByTime(10 * kRenewal);

@@ -20,13 +20,13 @@ const scene = {
 const names = (one: SceneInterface, of = scene): string[] =>
   fieldsOf(of, one).map(({ name }) => name);
 
-describe('how two materials meet', () => {
-  it('is as the scene says of them, in either order', () => {
+describe('the interface of two materials', () => {
+  it('is that of the scene, in either order of the materials', () => {
     expect(interfaceOf(scene, ['vat', 'ice'])).toBe(scene.interfaces![0]);
     expect(ownInterface(scene, ['ice', 'wood'])).toBeUndefined();
   });
 
-  it('is as usual where it says nothing', () => {
+  it('is the default if the scene has no interface', () => {
     expect(interfaceOf(scene, ['ice', 'wood'])).toEqual({
       materials: ['ice', 'wood'],
       stiffness: 700,
@@ -40,7 +40,7 @@ describe('how two materials meet', () => {
     });
   });
 
-  it('is by its pressure where one is liquid, but of the gas', () => {
+  it('has the law sph if one material is a liquid, except with the solver gas', () => {
     expect(interfaceOf(scene, ['water', 'vat']).law).toBe('sph');
     const gas: Scene = { ...scene, pressure_solver: 'gas' };
     expect(interfaceOf(gas, ['wood', 'water']).law).toBeUndefined();
@@ -64,7 +64,7 @@ describe('how two materials meet', () => {
     expect(names({ materials, law: 'sph' }, tense)).toEqual(['contact_angle']);
   });
 
-  it('keeps what its laws have in common', () => {
+  it('keeps the common members of its laws', () => {
     const ice = interfaceOf(scene, ['ice', 'vat']);
     const penalty = withLaw(scene, ice, 'penalty');
     expect(penalty).toEqual({

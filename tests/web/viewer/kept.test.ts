@@ -48,7 +48,7 @@ describe('recordings from files', () => {
     expect(faultOfRecording('a.vatrec', 256 * 1024 * 1024)).toBeUndefined();
   });
 
-  it('go in parts that make up the whole, and wait where the server asks for it', async () => {
+  it('are sent in parts, and wait if the server requests it', async () => {
     const bytes = Uint8Array.from({ length: 600_000 }, (_, i) => (i * 7919) % 251);
     const parts: { offset: number; recording?: string; data: string }[] = [];
     let isSoon = true;

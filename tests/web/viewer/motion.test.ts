@@ -28,7 +28,7 @@ function shown(columns: ParticleColumns, phase: number): number[] {
 }
 
 describe('ParticleColumns', () => {
-  it('shows particles where they are between two frames', () => {
+  it('interpolates particles between two frames', () => {
     const columns = new ParticleColumns(2);
     columns.show(block([10, 20]), kGrid);
     expect(shown(columns, 0)).toEqual([10, 20]);
@@ -97,7 +97,7 @@ describe('RigidMotion', () => {
   it.each([
     [0.3, 0.3],
     [-0.3, -0.3],
-  ])('turns by %f in 0.1 s, and tells its velocities', (angle, turned) => {
+  ])('rotates by %f in 0.1 s, and has its velocities', (angle, turned) => {
     const motion = new RigidMotion();
     motion.add(pose(1, 1));
     motion.add(pose(1.5, 1 + angle));
@@ -109,7 +109,7 @@ describe('RigidMotion', () => {
     expect(linear.length() + angular.length()).toBe(0);
   });
 
-  it('stands still before it has two poses', () => {
+  it('is at rest until it has two poses', () => {
     const motion = new RigidMotion();
     motion.add(pose(4, 1));
     const matrix = new Matrix4();

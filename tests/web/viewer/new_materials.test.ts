@@ -25,7 +25,7 @@ describe('materials that a scene lacks', () => {
     );
   });
 
-  it('are those of the model where nothing else is asked', () => {
+  it('are those of the model by default', () => {
     const bare = { ...model, materials: [] };
     expect(withNewMaterials(bare).materials).toEqual(model.materials);
     expect(newInterfaces(bare, material(model, 'jelly'))).toEqual([]);

@@ -46,7 +46,7 @@ it.each([
   ],
   [{ stride: 11, quantum: 1, detail: 3, region: false }, 'every 11th frame, to 500 mm'],
   [{ stride: 21, quantum: 1, detail: 3, region: false }, 'every 21st frame, to 500 mm'],
-])('what frames show, in words: %o', (header, words) => {
+])('the content of frames: %o', (header, words) => {
   expect(qualityInWords(header)).toBe(words);
 });
 
@@ -55,7 +55,7 @@ it.each([
   [{ stride: 4, detail: 3 }, '1 frame in 4'],
   [{ stride: 1, detail: 2 }, '½ of the particles'],
   [{ stride: 4, detail: 0 }, '1 frame in 4, ⅛ of the particles'],
-])('what frames lack, in words: %o', (header, words) => {
+])('the omissions of frames: %o', (header, words) => {
   expect(lossInWords(header)).toBe(words);
 });
 
@@ -77,7 +77,7 @@ describe('FrameMeter', () => {
   });
 });
 
-describe('what the guard did', () => {
+describe('actions of the guard', () => {
   const guard: GuardEvent = {
     tick: 40,
     cause: 'too_fast',
@@ -94,7 +94,7 @@ describe('what the guard did', () => {
     );
   });
 
-  it('says that the session has paused, also about a body it does not know', () => {
+  it('describes the pause of the session, also for an unknown body', () => {
     const words = describeGuard({ ...guard, body: 9, recovered: false }, description);
     expect(words).toContain('of body 9 moved too fast. The session has paused');
   });

@@ -4,7 +4,7 @@ import { nearestSphere } from '../../../web/viewer/view/base/pick';
 const kAlongX = { origin: { x: 0, y: 0, z: 0 }, direction: { x: 1, y: 0, z: 0 } };
 
 describe('nearestSphere', () => {
-  it('finds the sphere that the line meets first, and where', () => {
+  it('finds the first sphere on the ray, and the point', () => {
     const centers = [9, 0, 0, 5, 0.3, 0, 7, 0, 0];
     const hit = nearestSphere(kAlongX, centers, 0.5);
     expect(hit?.particle).toBe(1);

@@ -53,7 +53,7 @@ describe('frames that are shown as they come', () => {
     expect(reused).toEqual([1, 2]);
   });
 
-  it('are given back at once where they are of another scene', () => {
+  it('are returned immediately if they belong to another scene', () => {
     playout.put(frame(1), 0);
     playout.advance(0, () => false);
     expect(reused).toEqual([1]);
@@ -111,7 +111,7 @@ function largestStep(places: number[]): number {
 describe('smooth motion', () => {
   beforeEach(() => (playout.smooth = true));
 
-  it('goes on evenly though frames come late by turns', () => {
+  it('is even if some frames are late', () => {
     const late = [0.004, 0.012, 0.001, 0.015, 0.007];
     const arrivals = new Map(
       Array.from({ length: 200 }, (_, n) => [n, publishedAt(n) + 0.005 + late[n % 5]!]),
@@ -126,7 +126,7 @@ describe('smooth motion', () => {
     expect(playout.delaySeconds).toBeLessThan(0.02 + 0.016);
   });
 
-  it('goes on evenly where frames are dropped', () => {
+  it('is even if frames are dropped', () => {
     const arrivals = new Map(
       Array.from({ length: 200 }, (_, n): [number, number] => [n, publishedAt(n) + 0.01]).filter(
         ([n]) => n < 60 || n % 3 === 0,
@@ -144,7 +144,7 @@ describe('smooth motion', () => {
     expect(playout.delaySeconds).toBeLessThanOrEqual(0.2 + 1e-9);
   });
 
-  it('shows what stands still at once', () => {
+  it('shows bodies at rest immediately', () => {
     playout.put(frame(1), publishedAt(1));
     playout.put(frame(2), publishedAt(2));
     playout.put(frame(3, false), publishedAt(3));

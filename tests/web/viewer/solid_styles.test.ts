@@ -121,7 +121,7 @@ describe('The style of solids', () => {
     expect(round(extentOf(view, solid!, 'before').min)).toEqual([2.5, 1.5, 4.5]);
   });
 
-  it('stretches without a tearing strain, and tears beyond it until time goes back', () => {
+  it('stretches without a tearing strain, and tears beyond it until the time decreases', () => {
     const parted = [3, 2, 2, 6, 2, 2];
     const partsOf = (view: BodyView): number => {
       const [solid] = shown(view);

@@ -126,7 +126,7 @@ describe('The surface of a rigid body', () => {
     }
   });
 
-  it('has sharp edges where the faces of a mesh meet at an angle', () => {
+  it('has sharp edges between inclined faces of a mesh', () => {
     const normals = geometryOf(kTetrahedron)!.getAttribute('normal');
     const seen = new Set<string>();
     for (let i = 0; i < normals.count; ++i) {
@@ -205,7 +205,7 @@ describe('The surface of a deformable body', () => {
     expect(size.z).toBeCloseTo(0.6, 5);
   });
 
-  it('tears into closed parts, and heals when the time goes back', () => {
+  it('tears into closed parts, and is whole again if the time decreases', () => {
     const places = block([6, 3, 3], 0.1);
     const shape: SceneShape = { type: 'box', size: [0.6, 0.3, 0.3] };
     const lattice = new Lattice(places, 0.1);

@@ -13,7 +13,7 @@ import { poseFromText, poseToText, turned } from '../../../web/viewer/view/base/
 const kPose = { eye: new Vector3(1, -2, 1), target: new Vector3(0, 0, 0.5) };
 
 describe('a pose of the camera', () => {
-  it('keeps its distance and what it looks at while it turns', () => {
+  it('keeps its distance and its target while it rotates', () => {
     const after = turned(kPose, 0.3, 0.1, 1);
     expect(after.target).toEqual(kPose.target);
     expect(after.eye.distanceTo(after.target)).toBeCloseTo(kPose.eye.distanceTo(kPose.target), 12);
@@ -21,7 +21,7 @@ describe('a pose of the camera', () => {
     expect(back.eye.distanceTo(kPose.eye)).toBeLessThan(1e-12);
   });
 
-  it('goes up and to the right as it is told', () => {
+  it('moves up and to the right by the given distances', () => {
     expect(turned(kPose, 0, 0.1, 1).eye.z).toBeGreaterThan(kPose.eye.z);
     expect(turned(kPose, 0.1, 0, 1).eye.x).toBeGreaterThan(kPose.eye.x);
   });
@@ -35,7 +35,7 @@ describe('a pose of the camera', () => {
     expect(eye.distanceTo(target)).toBeCloseTo(kPose.eye.distanceTo(kPose.target) / 2, 12);
   });
 
-  it('goes through a text and back', () => {
+  it('has a text form that can be read', () => {
     expect(poseToText(kPose)).toBe('1,-2,1,0,0,0.5');
     expect(poseFromText(poseToText(kPose))).toEqual(kPose);
   });
@@ -47,7 +47,7 @@ describe('a pose of the camera', () => {
 });
 
 describe('gravity', () => {
-  it('goes down where nothing is tilted', () => {
+  it('points down without a tilt', () => {
     expect(gravityOf({ strength: 9.81, x: 0, y: 0 })).toEqual([0, 0, -9.81]);
   });
 
@@ -55,7 +55,7 @@ describe('gravity', () => {
     { strength: 9.81, x: 30, y: 0 },
     { strength: 3, x: -20, y: 45 },
     { strength: 0, x: 0, y: 0 },
-  ])('is what %o says, and back', (tilt) => {
+  ])('has the components of %o, and the reverse', (tilt) => {
     const gravity = gravityOf(tilt);
     expect(Math.hypot(...gravity)).toBeCloseTo(tilt.strength, 12);
     const back = tiltOf(gravity);
@@ -83,7 +83,7 @@ describe('a scene file', () => {
     ['[]', 'vat.scene/1'],
     ['null', 'vat.scene/1'],
     ['{"format": "else"}', 'vat.scene/1'],
-  ])('%s is none', (text, words) => {
+  ])('%s is invalid', (text, words) => {
     expect((readScene(text, 'x.json') as { fault: string }).fault).toContain(words);
   });
 });
@@ -117,7 +117,9 @@ describe('the state in words', () => {
     [{ isConnected: false }, 'continues when the server answers'],
     [{ isConnected: false, isEnded: true }, 'Come back'],
     [{ isConnected: false, hasPicture: false }, 'No frame has arrived'],
-  ])('%o is told', (change, words) => expect(summarise({ ...state, ...change })).toContain(words));
+  ])('%o is described', (change, words) =>
+    expect(summarise({ ...state, ...change })).toContain(words),
+  );
 
   it('does not miss pictures while it is paused', () => {
     expect(summarise({ ...state, playing: false, silentSeconds: 60 })).toBe('Paused · Dew.');
@@ -131,7 +133,7 @@ describe('the state in words', () => {
     [{ people: 2 }, false],
     [{ silentSeconds: 4 }, false],
     [{ isConnected: false }, false],
-  ])('differs by %o in its pace alone: %s', (change, expected) => {
+  ])('with %o differs only in the speed: %s', (change, expected) => {
     const slow = { ...state, slow: true, factor: 0.4 };
     expect(onlyPaceDiffers(slow, { ...slow, ...change })).toBe(expected);
   });
@@ -140,7 +142,7 @@ describe('the state in words', () => {
 describe('a link to share', () => {
   const page = 'http://host:8080/?session=s1#invite=old&view=x';
 
-  it('names the session and drops what this page was opened with', () => {
+  it('names the session and omits other parameters of the page', () => {
     expect(shareLink(page, { session: 's2' }, {})).toBe('http://host:8080/?session=s2');
   });
 
@@ -168,12 +170,12 @@ describe('a link to a moment', () => {
     expect(linkedMoment(link.href)).toBe(120);
   });
 
-  it.each(['', '#at=', '#at=x', '#at=-1', '#at=1.5', '#at=1e3'])('"%s" has none', (hash) => {
+  it.each(['', '#at=', '#at=x', '#at=-1', '#at=1.5', '#at=1e3'])('"%s" has no moment', (hash) => {
     expect(linkedMoment(`http://host/${hash}`)).toBeUndefined();
   });
 });
 
-describe('what the server refuses, in words', () => {
+describe('rejections of the server, in words', () => {
   const refused = (kind: string, data: object = {}): string =>
     describeError(
       new RequestError(kind, 'method.name: reason', 1, { hint: 'For clients.', ...data }),
@@ -208,7 +210,7 @@ describe('what the server refuses, in words', () => {
     ['not_allowed', { role: 'controller', least_role: 'owner' }, 'This needs the role owner.'],
     ['not_allowed', {}, 'Method.name: reason.'],
     ['invalid_params', {}, 'Method.name: reason.'],
-  ])('%s says what to do', (kind, data, words) => expect(refused(kind, data)).toBe(words));
+  ])('%s names the next action', (kind, data, words) => expect(refused(kind, data)).toBe(words));
 
   it('lists the faults of a scene', () => {
     const errors = [1, 2, 3, 4].map((n) => ({ code: 'c', path: `/${n}`, message: `m${n}` }));

@@ -22,7 +22,7 @@ function shelf(text: string | null = null): Shelf & { text: string | null } {
 }
 
 describe('the text of settings', () => {
-  it('names only what is not as usual', () => {
+  it('contains only settings that differ from the defaults', () => {
     expect(settingsToText(defaultSettings())).toBe('');
     expect(settingsToText({ ...defaultSettings(), liquid: 'splats' })).toBe('liquid:splats');
   });
@@ -41,7 +41,7 @@ describe('the text of settings', () => {
     expect(settingsFromText(settingsToText(settings))).toEqual(settings);
   });
 
-  it('is as usual where it is wrong', () => {
+  it('has the default for an invalid value', () => {
     expect(settingsFromText('liquid:fluid').liquid).toBe('fluid');
     for (const text of [
       '',
@@ -67,7 +67,7 @@ describe('SettingsStore', () => {
     expect(linkedSettings('http://x/#invite=t')).toBeUndefined();
   });
 
-  it('tells and keeps changes, also in browsers that store nothing', () => {
+  it('reports and keeps changes, also in browsers without storage', () => {
     const kept = shelf();
     const store = new SettingsStore(kept);
     const told: string[] = [];
@@ -108,7 +108,7 @@ describe('the style of liquids', () => {
     expect(words).toMatch(/20000 particles/);
   });
 
-  it('is never one that cannot be drawn, and says why', () => {
+  it('is a possible style, with the reason for a replacement', () => {
     for (const chosen of ['auto', 'fluid'] as const) {
       const { style, words } = decideStyle(chosen, weak, false, 1000);
       expect(style).toBe('splats');

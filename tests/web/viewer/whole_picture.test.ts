@@ -12,7 +12,7 @@ it.each([
   ['while it plays', { detail: 0 }, true, 0],
   ['of an earlier tick, equal to the present one', { detail: 0, tick: 6 }, false, 1],
   ['of an earlier tick and of all particles', { tick: 6 }, false, 0],
-])('asks for the whole picture once where it stands still: one %s', (_, change, playing, count) => {
+])('requests the whole picture once at rest: one %s', (_, change, playing, count) => {
   const ask = vi.fn();
   const whole = new WholePicture(ask);
   whole.showFrame(header(change));
@@ -20,7 +20,7 @@ it.each([
   expect(ask).toHaveBeenCalledTimes(count);
 });
 
-it('asks anew at each standstill', () => {
+it('requests it again at each rest', () => {
   const ask = vi.fn();
   const whole = new WholePicture(ask);
   whole.showFrame(header({ detail: 1 }));
@@ -28,7 +28,7 @@ it('asks anew at each standstill', () => {
   expect(ask).toHaveBeenCalledTimes(2);
 });
 
-it('asks anew for another scene at the same tick', () => {
+it('requests it again for another scene at the same tick', () => {
   const ask = vi.fn();
   const whole = new WholePicture(ask);
   for (const epoch of [1, 2]) {
