@@ -76,6 +76,7 @@ it('shows a liquid that moves in a vat at rest', async () => {
 it('pauses with the space bar', async () => {
   await viewer.page.keyboard.press('Space');
   const tick = await untilPaused();
+  await viewer.until('#connection[data-slow="false"]'); // a slow page requests the omitted particles
   const before = await viewer.stillPicture();
   const { playing } = await observer.nextStatus();
   await observer.nextStatus();
