@@ -42,8 +42,8 @@ std::optional<Number> take(std::string_view& bytes, bool is_big_endian = false) 
   return std::bit_cast<Number>(raw);
 }
 
-/// Removes the first word, which ends at white space, and returns it. Returns an empty text if
-/// there is none.
+/// Removes the first word from `text` and returns it. A word ends at white space. Returns an empty
+/// word if `text` contains no word.
 std::string_view take_word(std::string_view& text);
 /// Returns the number, if the whole word is a finite number.
 std::optional<double> to_number(std::string_view word);

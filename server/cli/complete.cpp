@@ -66,8 +66,7 @@ Words scenes(const Words& words) {
 }
 
 Words values_of(const CLI::Option& option, const Words& words) {
-  const bool is_scene = option.get_name() == "scene" || option.get_name() == "--scene";
-  return is_scene ? scenes(words) : listed_values(option);
+  return option.get_name() == "--scene" ? scenes(words) : listed_values(option);
 }
 
 /// Returns the option before the last word, if it needs a value.

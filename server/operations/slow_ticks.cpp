@@ -43,10 +43,13 @@ void SlowTicks::add(SlowTick tick) {
 }
 
 std::string SlowTicks::trace() const {
-  const std::lock_guard lock(mutex_);
+  // A session that adds a tick waits for the copy only.
+  std::unique_lock lock(mutex_);
+  const std::deque<SlowTick> ticks = ticks_;
+  lock.unlock();
   Json events = Json::array();
   std::map<std::string_view, std::size_t> sessions;
-  for (const SlowTick& tick : ticks_) {
+  for (const SlowTick& tick : ticks) {
     const auto [session, is_new] = sessions.emplace(tick.session, sessions.size() + 1);
     if (is_new) {
       events.push_back({{"name", "thread_name"},

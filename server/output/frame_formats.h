@@ -26,10 +26,10 @@ Result<std::unique_ptr<FrameWriter>> create_ply_writer(const std::string& name,
                                                        std::size_t frame_count);
 
 /// Returns a writer of a series of VTK files (.vtu, binary, compressed by LZ4) and of a list of
-/// them with their times (.pvd). Properties of each particle: position [m], velocity [m/s], index
-/// of the body in the scene, kind of body (number of BodyKind), radius [m], density [kg/m^3],
-/// pressure [Pa]. Density and pressure are 0 except for liquids. Creates the list, and returns an
-/// error if the creation fails.
+/// them with their times (.pvd). Each particle has these properties: position [m], velocity [m/s],
+/// index of the body in the scene, kind of the body (number of BodyKind), radius [m], density
+/// [kg/m^3] and pressure [Pa]. If the body is not a liquid, density and pressure are 0. The
+/// function creates the list, and returns an error if the creation fails.
 Result<std::unique_ptr<FrameWriter>> create_pvd_writer(const std::string& name,
                                                        std::size_t frame_count);
 
