@@ -1,5 +1,6 @@
 include(CMakeFindDependencyMacro)
 find_dependency(Eigen3 3.4)
+find_dependency(Threads)
 include(${CMAKE_CURRENT_LIST_DIR}/vatCoreTargets.cmake)
 set(vat_core_FOUND TRUE)
 foreach(component IN LISTS vat_FIND_COMPONENTS)

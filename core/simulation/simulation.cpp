@@ -203,6 +203,21 @@ std::optional<BodyId> Simulation::find_body(std::string_view name) const {
   return body == nullptr ? std::nullopt : std::optional(body->id);
 }
 
+std::shared_ptr<const void> Simulation::keep_views() {
+  struct Kept {
+    std::shared_ptr<const Model> model;
+    std::shared_ptr<const Sleepers> sleepers;
+    std::vector<Vec3> positions;
+    std::vector<Vec3> velocities;
+  };
+  Configuration& now = impl_->sleepers ? impl_->shown : impl_->state.now;
+  auto kept =
+      std::make_shared<Kept>(Kept{impl_->model, impl_->sleepers, now.position, now.velocity});
+  kept->positions.swap(now.position);
+  kept->velocities.swap(now.velocity);
+  return kept;
+}
+
 Vec3 Simulation::vat_offset() const {
   const std::optional<Vat>& vat = impl_->all().scene.vat;
   return vat ? vat_motion(*vat, impl_->time()).offset : Vec3(Vec3::Zero());

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -93,6 +94,9 @@ class Simulation : public HostInterface {
   std::optional<BodyView> find_body(BodyId id) const;
   /// Returns the id of the body with this name, or an empty optional if no body has this name.
   std::optional<BodyId> find_body(std::string_view name) const;
+  /// Returns an owner of the memory of all present views. While the owner exists, the views remain
+  /// valid and keep their values. The simulation continues with a copy of positions and velocities.
+  std::shared_ptr<const void> keep_views();
   /// Returns the current displacement of the vat [m]. The result is zero without a vat or motion.
   Vec3 vat_offset() const;
   /// Returns the SPH fields of a liquid body. The cost is about one force evaluation. Fails if the

@@ -3,7 +3,7 @@
 import math
 import sys
 
-from vat_client import Client
+from vat import Client
 
 TICKS = 5  # of 0.02 s, for each action
 SCENE = {

@@ -5,7 +5,7 @@ All students see the session at the printed address.
 
 import sys
 
-from vat_client import Client
+from vat import Client
 
 EARTH, MOON, SPACE = 9.81, 1.62, 0
 

@@ -9,8 +9,7 @@ import sys
 import threading
 import time
 
-from decode_frame import read_header
-from vat_client import Client
+from vat import Client, frame_number
 
 PERIOD = 0.25  # of each viewer's requests [s]
 
@@ -33,7 +32,7 @@ class Viewer(threading.Thread):
                     self.longest_reply = max(self.longest_reply, time.monotonic() - now)
                     request += PERIOD
                 data = client.next_frame_bytes()
-                client.notify("frames.ack", number=read_header(data).number)
+                client.notify("frames.ack", number=frame_number(data))
                 self.frames, self.bytes = self.frames + 1, self.bytes + len(data)
 
 

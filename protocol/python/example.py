@@ -2,7 +2,7 @@
 
 import sys
 
-from vat_client import Client, VatError
+from vat import Client, Frame, VatError
 
 SCENE = {
     "format": "vat.scene/1",
@@ -12,12 +12,12 @@ SCENE = {
 }
 
 
-def height(frame):
-    """Returns the height of the only body. Frames contain its position in half quanta."""
-    return frame.scale.origin[2] + frame.scale.quantum * frame.blocks[0].place[2] / 2
+def height(frame: Frame) -> float:
+    """Returns the height of the only body."""
+    return frame.bodies[0].center_of_mass[2]
 
 
-def main():
+def main() -> None:
     with Client(sys.argv[1]) as client:
         session = client.call("session.create", name="fall", scene=SCENE)["session"]
         joined = client.call("session.join", session=session)
@@ -26,10 +26,10 @@ def main():
         client.call("control.reset")
         client.call("frames.subscribe", max_error=0.001, every=25)
         first = client.next_frame()
-        print(f"tick {first.header.tick}: at {height(first):.2f} m")
+        print(f"tick {first.tick}: at {height(first):.2f} m")
         client.call("control.step", ticks=25)
         frame = client.next_frame()
-        print(f"tick {frame.header.tick}: at {height(frame):.2f} m")
+        print(f"tick {frame.tick}: at {height(frame):.2f} m")
         try:
             client.call("world.remove_body", body=99)
         except VatError as error:

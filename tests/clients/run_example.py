@@ -11,7 +11,12 @@ import subprocess
 import sys
 from pathlib import Path
 
-SCENES = Path(__file__).resolve().parents[1] / "protocol" / "scenes"
+TESTS = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(TESTS / "support"))
+
+from serving import serving
+
+SCENES = TESTS / "protocol" / "scenes"
 PATIENCE = 60
 
 
@@ -31,15 +36,9 @@ def main():
     if arguments[0] == "--catalogue":
         arguments, scenes = arguments[1:], []
     program, expected, *command = arguments
-    serve = [program, "serve", "--port", "0", *scenes, "--log-level", "error"]
-    with subprocess.Popen(serve, stdout=subprocess.PIPE, text=True) as server:
-        try:
-            secure, port = re.search(r"http(s?)://127\.0\.0\.1:(\d+)/",
-                                     server.stdout.readline()).groups()
-            done = subprocess.run([*command, f"ws{secure}://127.0.0.1:{port}/ws"], text=True,
-                                  input="\n" * 10, stdout=subprocess.PIPE, timeout=PATIENCE)
-        finally:
-            server.terminate()
+    with serving(program, *scenes) as url:
+        done = subprocess.run([*command, url], text=True, input="\n" * 10, stdout=subprocess.PIPE,
+                              timeout=PATIENCE)
     printed = done.stdout.splitlines()
     wanted = with_matches(Path(expected).read_text("utf-8").splitlines(), printed)
     print(*difflib.unified_diff(wanted, printed, "expected", "printed", lineterm=""), sep="\n")

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "protocol" / "python"))
+sys.path.insert(0, str(ROOT / "protocol" / "python" / "reference"))
 
 from bad_frame import BadFrame
 from blocks import Block, ParticleBlock

@@ -8,7 +8,7 @@ INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.MULTILINE)
 # The lowest first. Each line is a floor of the architecture.
 FOLDER_ORDER = (
     # constants, containers, kernels
-    "core", "core/support", "core/kernels",
+    "core", "core/support", "core/threads", "core/kernels",
     # scene values, and formulas of forces
     "core/scene", "core/laws",
     # sampling of shapes; step and integrator for a scene; checks
@@ -23,7 +23,7 @@ FOLDER_ORDER = (
     "core/stepping", "core/sleep", "core/saved", "core/simulation",
     # steps on other devices
     "core/device/opencl", "core/device/tait", "core/device",
-    "protocol/json", "protocol/scene", "protocol/frame", "protocol/recording",
+    "protocol/json", "protocol/scene", "protocol/frame", "protocol/recording", "protocol/python/native",
     # files, sockets and measurements, without sessions
     "server/support", "server/output", "server/storage/sqlite", "server/storage", "server/access", "server/transport",
     "server/operations", "server/messages", "server/http",

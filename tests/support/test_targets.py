@@ -20,8 +20,11 @@ def main():
     programs = {line.split(": ")[0] for line in listed.stdout.splitlines()
                 if "CXX_EXECUTABLE_LINKER" in line}
     paths = re.findall(re.escape(folder) + r"/([\w./-]+)", json.dumps(tests))
+    chosen = programs.intersection(paths)
+    if any(path.split("/")[0] == "python" for path in paths):
+        chosen.add("vat_python")
     # Without targets, ninja builds all.
-    print("\n".join(sorted(programs.intersection(paths)) or ["vat"]))
+    print("\n".join(sorted(chosen) or ["vat"]))
 
 
 if __name__ == "__main__":

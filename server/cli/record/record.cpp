@@ -19,7 +19,7 @@
 #include "server/cli/common/scene_argument.h"
 #include "server/cli/record/record_run.h"
 #include "server/cli/simulate/simulate_schedule.h"
-#include "server/support/task_runner.h"
+#include "core/threads/thread_pool.h"
 
 namespace vat {
 namespace {

@@ -24,7 +24,7 @@
 #include "server/output/diagnostics_writer.h"
 #include "server/output/frame_writer.h"
 #include "server/output/text.h"
-#include "server/support/task_runner.h"
+#include "core/threads/thread_pool.h"
 
 namespace vat {
 

@@ -10,7 +10,7 @@
 #include "server/session/core/session_command.h"
 #include "server/support/clock.h"
 #include "server/support/resource_budget.h"
-#include "server/support/task_runner.h"
+#include "core/threads/thread_pool.h"
 
 namespace vat {
 

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "server/cli/common/command.h"
-#include "server/support/task_runner.h"
+#include "core/threads/thread_pool.h"
 #include "tests/bench/accuracy/accuracy_report.h"
 #include "tests/bench/accuracy/catalogue_report.h"
 #include "tests/bench/accuracy/control_report.h"

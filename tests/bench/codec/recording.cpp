@@ -5,7 +5,7 @@
 
 #include "protocol/scene/scene_json.h"
 #include "server/cli/common/scene_argument.h"
-#include "server/support/task_runner.h"
+#include "core/threads/thread_pool.h"
 #include "tests/bench/speed/scenes.h"
 
 namespace vat::bench {

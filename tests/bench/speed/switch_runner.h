@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "server/support/task_runner.h"
+#include "core/threads/thread_pool.h"
 
 namespace vat::bench {
 

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "server/support/task_runner.h"
+#include "core/threads/thread_pool.h"
 #include "tests/bench/stability/stability_parts.h"
 #include "tests/stability/adversarial/adversarial.h"
 #include "tests/stability/closed_pairs.h"

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "server/support/task_runner.h"
+#include "core/threads/thread_pool.h"
 #include "tests/bench/stability/stability_parts.h"
 #include "tests/stability/random/random_vat.h"
 

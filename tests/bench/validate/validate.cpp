@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "server/cli/common/command.h"
-#include "server/support/task_runner.h"
+#include "core/threads/thread_pool.h"
 #include "tests/bench/options.h"
 #include "tests/bench/report/table.h"
 #include "tests/bench/validate/validate_table.h"

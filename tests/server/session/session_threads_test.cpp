@@ -4,7 +4,7 @@
 #include <fstream>
 #include <vector>
 
-#include "server/support/task_runner.h"
+#include "core/threads/thread_pool.h"
 #include "tests/server/fixture/session_fixture.h"
 #include "tests/support/temporary_folder.h"
 

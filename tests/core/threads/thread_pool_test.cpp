@@ -1,4 +1,4 @@
-#include "server/support/task_runner.h"
+#include "core/threads/thread_pool.h"
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@
 
 #include "tests/support/wait.h"
 
-namespace vat::task_runner_test {
+namespace vat::thread_pool_test {
 namespace {
 
 class TaskRunnerThreads : public testing::TestWithParam<std::size_t> {};
@@ -339,4 +339,4 @@ TEST(TaskRunner, WaitingThreadsSleep) {
 }
 
 }  // namespace
-}  // namespace vat::task_runner_test
+}  // namespace vat::thread_pool_test

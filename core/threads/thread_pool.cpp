@@ -1,4 +1,4 @@
-#include "server/support/task_runner.h"
+#include "core/threads/thread_pool.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,0 +1,70 @@
+// Views of bodies whose memory is kept.
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <vector>
+
+#include "tests/support/edited_scene.h"
+#include "tests/support/resting_scenes.h"
+
+namespace vat::views_test {
+namespace {
+
+using namespace test;
+
+/// Copies of the values of a view.
+struct Values {
+  explicit Values(const BodyView& view)
+      : positions(view.positions.begin(), view.positions.end()),
+        velocities(view.velocities.begin(), view.velocities.end()),
+        masses(view.masses.begin(), view.masses.end()),
+        numbers(view.numbers.begin(), view.numbers.end()) {}
+  bool operator==(const Values&) const = default;
+
+  std::vector<Vec3> positions;
+  std::vector<Vec3> velocities;
+  std::vector<Real> masses;
+  std::vector<Index> numbers;
+};
+
+std::vector<Values> values_of(const std::vector<BodyView>& views) {
+  return {views.begin(), views.end()};
+}
+
+/// Changes a simulation whose views are kept, and one without views.
+void expect_kept(const Scene& scene, std::uint32_t steps) {
+  Simulation simulation = make_simulation(scene);
+  Simulation other = make_simulation(scene);
+  simulation.advance(steps);
+  other.advance(steps);
+  const std::vector<BodyView> views = simulation.bodies();
+  const std::vector<Values> values = values_of(views);
+  const std::shared_ptr<const void> kept = simulation.keep_views();
+  EXPECT_EQ(values_of(simulation.bodies()), values);
+  for (Simulation* each : {&simulation, &other}) {
+    each->advance(10);
+    ASSERT_TRUE(each->remove_body(views.front().id).ok());
+    each->advance(10);
+  }
+  EXPECT_EQ(values_of(views), values);
+  EXPECT_NE(values_of(simulation.bodies()), values);
+  EXPECT_EQ(simulation.state_hash(), other.state_hash());
+}
+
+TEST(Views, KeptViewsHaveTheirValuesAfterChanges) {
+  expect_kept(sampled_scene(), 20);
+}
+
+TEST(Views, KeptViewsIncludeSleepers) {
+  Scene scene = make_resting_scene();
+  scene.bodies = {make_crate("crate", 0.0), make_marble("marble", {5, 5, 6})};
+  const std::uint32_t asleep = 200;
+  Simulation simulation = make_simulation(scene);
+  simulation.advance(asleep);
+  ASSERT_EQ(simulation.sleeping_body_count(), 1U);
+  expect_kept(scene, asleep);
+}
+
+}  // namespace
+}  // namespace vat::views_test
