@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "protocol/frame/published_state.h"
+#include "protocol/published/published_state.h"
 
 namespace vat {
 

@@ -148,6 +148,14 @@ const Json* to_array(const Json& value, const std::string& path, std::size_t min
   return &value;
 }
 
+Json to_json(const Vec3& vector) {
+  return Json::array({vector.x(), vector.y(), vector.z()});
+}
+
+Json to_json(const Quat& orientation) {
+  return Json::array({orientation.w(), orientation.x(), orientation.y(), orientation.z()});
+}
+
 ObjectReader::ObjectReader(const Json& value, std::string path, Errors& errors)
     : value_(value.is_object() ? &value : nullptr), path_(std::move(path)), errors_(&errors) {
   if (value_ == nullptr) add_error(errors, "wrong_type", path_, "must be an object");

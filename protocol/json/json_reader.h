@@ -58,6 +58,10 @@ std::optional<Vec3> to_vector(const Json& value, const std::string& path, Real m
 const Json* to_array(const Json& value, const std::string& path, std::size_t min, std::size_t max,
                      Errors& errors);
 
+/// Return [x, y, z], or an orientation [w, x, y, z].
+Json to_json(const Vec3& vector);
+Json to_json(const Quat& orientation);
+
 /// Reader of one JSON object. Each wrong, missing or unknown member adds one error with its JSON
 /// pointer and valid range. The function then returns the fallback or a value in range, so that one
 /// pass reports all errors. Additional error codes: missing, unknown_member, unknown_name.

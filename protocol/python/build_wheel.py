@@ -49,6 +49,8 @@ def package_files(package: Path) -> dict[str, bytes]:
     files = {}
     for folder, folders, names in os.walk(package, followlinks=True):
         folders[:] = [name for name in folders if name != "__pycache__"]
+        if Path(folder) == package / "viewer":
+            folders[:], names = ["export"], []  # the player of recordings
         for name in names:
             file = Path(folder) / name
             files[f"vat/{file.relative_to(package)}"] = file.read_bytes()

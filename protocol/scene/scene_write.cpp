@@ -5,9 +5,7 @@
 namespace vat {
 namespace {
 
-Json to_json(const Vec3& v) {
-  return Json::array({v.x(), v.y(), v.z()});
-}
+using vat::to_json;
 
 Json to_json(const std::vector<Vec3>& vectors) {
   Json list = Json::array();

@@ -6,9 +6,9 @@
 #include <string>
 #include <system_error>
 
+#include "protocol/recording/html_page.h"
 #include "server/cli/common/command.h"
 #include "server/cli/common/data_folders.h"
-#include "server/recording/html_page.h"
 
 namespace vat {
 namespace {

@@ -9,10 +9,10 @@
 #include <thread>
 
 #include "core/limits.h"
+#include "protocol/messages/describe.h"
 #include "server/cli/common/command.h"
 #include "server/cli/common/data_folders.h"
 #include "server/cli/replay_seeks.h"
-#include "server/messages/describe.h"
 #include "server/operations/log_format.h"
 #include "server/replay/replay_player.h"
 #include "server/rpc/method_table.h"

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "protocol/frame/frame_codec.h"
+#include "protocol/frame/frame_domain.h"
 #include "protocol/frame/grid_frame.h"
 #include "server/clients/client_outbox.h"
-#include "server/frames/frame_domain.h"
 #include "server/frames/subscription.h"
 #include "server/operations/server_metrics.h"
 

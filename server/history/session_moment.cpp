@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/limits.h"
-#include "server/messages/describe.h"
+#include "protocol/messages/describe.h"
 
 namespace vat {
 namespace {

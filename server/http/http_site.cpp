@@ -20,7 +20,7 @@ constexpr const char* kPrometheusText = "text/plain; version=0.0.4; charset=utf-
 constexpr std::string_view kHashedFolder = "/assets/";
 
 /// The viewer loads only its own files, and connects only to its server. 'self' does not cover ws:
-/// in all browsers.
+/// in all browsers. The origins that may show the site in a frame follow.
 constexpr const char* kContentSecurityPolicy =
     "default-src 'none'; script-src 'self'; worker-src 'self'; connect-src 'self' ws: wss:; "
     "style-src 'self'; img-src 'self'; base-uri 'none'; form-action 'none'; "
@@ -118,11 +118,17 @@ HttpResponse answer(const StaticFiles& viewer, const SiteSources& sources,
   return viewer_file(viewer, *path, request);
 }
 
-void add_common_headers(HttpResponse& response) {
+std::string security_policy(const std::vector<std::string>& framing_origins) {
+  std::string policy = kContentSecurityPolicy;
+  for (const std::string& origin : framing_origins) policy += ' ' + origin;
+  return policy;
+}
+
+void add_common_headers(const std::string& policy, HttpResponse& response) {
   bool has_cache_control = false;
   for (const auto& header : response.headers) has_cache_control |= header.first == "Cache-Control";
   if (!has_cache_control) response.headers.emplace_back("Cache-Control", "no-store");
-  response.headers.emplace_back("Content-Security-Policy", kContentSecurityPolicy);
+  response.headers.emplace_back("Content-Security-Policy", policy);
   response.headers.emplace_back("X-Content-Type-Options", "nosniff");
   response.headers.emplace_back("Referrer-Policy", "no-referrer");
   response.headers.emplace_back("Cross-Origin-Resource-Policy", "same-origin");
@@ -132,9 +138,10 @@ void add_common_headers(HttpResponse& response) {
 
 HttpHandler make_http_site(StaticFiles viewer, SiteSources sources) {
   return [files = std::make_shared<const StaticFiles>(std::move(viewer)),
+          policy = security_policy(sources.framing_origins),
           source = std::move(sources)](const HttpRequest& request) {
     HttpResponse response = answer(*files, source, request);
-    add_common_headers(response);
+    add_common_headers(policy, response);
     return response;
   };
 }

@@ -3,6 +3,7 @@
 #include <functional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "server/http/static_files.h"
 #include "server/operations/server_phase.h"
@@ -20,6 +21,8 @@ struct SiteSources {
   std::function<ServerPhase()> phase;
   std::function<std::string()> health;  ///< returns the JSON text of "/healthz"
   std::string version;                  ///< JSON text of "/version"
+  /// Other origins whose pages may show this site in a frame, such as "https://a.example".
+  std::vector<std::string> framing_origins{};
 };
 
 /// Returns a handler for GET and HEAD:

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "server/messages/describe.h"
+#include "protocol/messages/describe.h"
 #include "server/methods/handlers.h"
 #include "server/people/person_name.h"
 #include "server/session/core/saved_state.h"

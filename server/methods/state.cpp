@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/limits.h"
-#include "server/messages/describe.h"
+#include "protocol/messages/describe.h"
 #include "server/methods/handlers.h"
 #include "server/methods/parts.h"
 #include "server/session/core/session_view.h"

@@ -4,7 +4,7 @@
 #include <iterator>
 #include <utility>
 
-#include "server/output/text.h"
+#include "protocol/files/text.h"
 
 namespace vat {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "server/output/output_file.h"
-#include "server/output/text.h"
+#include "protocol/files/output_file.h"
+#include "protocol/files/text.h"
 
 namespace vat {
 

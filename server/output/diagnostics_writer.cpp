@@ -3,7 +3,7 @@
 #include <initializer_list>
 #include <utility>
 
-#include "server/output/text.h"
+#include "protocol/files/text.h"
 
 namespace vat {
 

@@ -5,7 +5,7 @@
 
 #include "core/simulation/simulation.h"
 #include "core/support/result.h"
-#include "server/output/output_file.h"
+#include "protocol/files/output_file.h"
 
 namespace vat {
 

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <utility>
 
+#include "protocol/files/output_file.h"
 #include "server/output/bytes.h"
-#include "server/output/output_file.h"
 
 namespace vat {
 

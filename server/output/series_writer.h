@@ -4,8 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "protocol/files/output_file.h"
 #include "server/output/frame_writer.h"
-#include "server/output/output_file.h"
 
 namespace vat {
 

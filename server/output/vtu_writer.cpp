@@ -10,10 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "protocol/files/text.h"
 #include "server/output/bytes.h"
 #include "server/output/frame_formats.h"
 #include "server/output/series_writer.h"
-#include "server/output/text.h"
 
 namespace vat {
 

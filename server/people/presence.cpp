@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "server/messages/describe.h"
+#include "protocol/messages/describe.h"
 #include "server/messages/limits.h"
 
 namespace vat {

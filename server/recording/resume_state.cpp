@@ -9,8 +9,8 @@
 
 #include "core/saved/archive.h"
 #include "core/saved/sealed_bytes.h"
+#include "protocol/files/output_file.h"
 #include "protocol/frame/frame_layout.h"
-#include "server/output/output_file.h"
 #include "server/storage/sqlite/compression.h"
 #include "server/storage/sqlite/storage_error.h"
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/support/check.h"
-#include "server/messages/describe.h"
+#include "protocol/messages/describe.h"
 #include "server/session/core/scene_loading.h"
 #include "server/session/core/session_restore.h"
 #include "server/storage/sqlite/compression.h"

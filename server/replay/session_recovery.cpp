@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/support/check.h"
-#include "server/messages/describe.h"
+#include "protocol/messages/describe.h"
 #include "server/replay/log_replay.h"
 #include "server/session/core/session_restore.h"
 #include "server/support/log.h"

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "core/support/check.h"
+#include "protocol/messages/describe.h"
 #include "server/history/recorder.h"
 #include "server/http/downloads.h"
-#include "server/messages/describe.h"
 
 namespace vat {
 

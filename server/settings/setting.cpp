@@ -7,7 +7,7 @@
 #include <system_error>
 #include <utility>
 
-#include "server/output/text.h"
+#include "protocol/files/text.h"
 
 namespace vat {
 namespace {

@@ -1,6 +1,10 @@
-import { readFileSync } from 'node:fs';
-import { fileURLToPath } from 'node:url';
+import { execFileSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { fileURLToPath, pathToFileURL } from 'node:url';
 import { expect, it } from 'vitest';
+import { program } from './support/server';
 import { kInTime, unfold, Visits } from './support/visits';
 
 /** A recording of frames is shown in place of the session. */
@@ -36,6 +40,25 @@ it('plays a file, seeks, and returns to the session', async () => {
   await page.waitForSelector('#replay', { state: 'hidden' });
   await visits.viewer.untilScene('rigid-stack');
   expect(await page.isDisabled('#share-open')).toBe(false);
+});
+
+it.each(['page', 'frame of a notebook'])('plays an exported recording as a %s', async (place) => {
+  await visits.visit('rigid-stack');
+  const folder = mkdtempSync(join(tmpdir(), 'vat-export-'));
+  const file = join(folder, 'twice.html');
+  execFileSync(program(), ['export', kFile, '--html', file], { stdio: 'ignore' });
+  const page = await visits.viewer.page.context().browser()!.newPage();
+  try {
+    const data = readFileSync(file).toString('base64');
+    if (place === 'page') await page.goto(pathToFileURL(file).href);
+    else await page.setContent(`<iframe src="data:text/html;base64,${data}"></iframe>`);
+    const player = place === 'page' ? page.mainFrame() : page.frames()[1]!;
+    await player.waitForSelector('#view[data-tick="3"]', kInTime);
+    expect(await player.textContent('#replay')).toContain('of 0.06 s');
+  } finally {
+    await page.close();
+    rmSync(folder, { recursive: true });
+  }
 });
 
 it('shows the fault of an invalid file, and the session continues', async () => {

@@ -6,8 +6,8 @@
 #include <array>
 
 #include "core/simulation/simulation.h"
+#include "protocol/files/text.h"
 #include "protocol/scene/scene_json.h"
-#include "server/output/text.h"
 #include "tests/cli/program.h"
 #include "tests/cli/readers.h"
 

@@ -6,7 +6,7 @@
 #include <csignal>
 #include <filesystem>
 
-#include "server/recording/recording_file.h"
+#include "protocol/recording/recording_file.h"
 #include "tests/cli/program.h"
 #include "tests/support/wait.h"
 

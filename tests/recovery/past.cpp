@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "server/messages/describe.h"
+#include "protocol/messages/describe.h"
 #include "server/replay/log_replay.h"
 #include "server/session/core/scene_loading.h"
 #include "tests/support/lone_environment.h"

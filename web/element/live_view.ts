@@ -9,6 +9,7 @@ import { Stream } from '../viewer/stream/stream';
 import type { Report } from '../viewer/stream/stream';
 import type { Pose } from '../viewer/view/base/pose';
 import { SettingsStore } from '../viewer/view/base/settings_store';
+import { kNoShelf } from '../viewer/view/base/shelf';
 import { HeldMarker } from '../viewer/view/held_marker';
 import { View } from '../viewer/view/view';
 import { Controls } from './controls';
@@ -22,9 +23,6 @@ export interface LiveOptions {
   /** Whether the user can pull bodies and use the controls. */
   hasControls: boolean;
 }
-
-/** Settings are not stored, because several viewers can be on one page. */
-const kNoShelf = { getItem: () => null, setItem: () => undefined };
 
 /** The picture of one session or recording, with its connection. */
 export class LiveView {
@@ -46,6 +44,7 @@ export class LiveView {
     this.pose = pose;
     this.stream = new Stream(source.place, (report) => this.handle(report));
     this.playout = new Playout(this.stream);
+    // Settings are not stored, because several viewers can be on one page.
     const settings = new SettingsStore(kNoShelf, view);
     this.view = new View(canvas, this.stream, this.playout, () => this.draw(), settings);
     this.controls = new Controls(this.stream.request, (error) => this.refuse(error));

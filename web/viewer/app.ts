@@ -37,6 +37,7 @@ import { WholePicture } from './panel/status/whole_picture';
 import { Push, Pusher } from './tools/push';
 import { HeldMarker } from './view/held_marker';
 import { linkedPose } from './view/base/pose';
+import { shelfOf } from './view/base/shelf';
 import { View } from './view/view';
 import './view/stage.css';
 import './panel/panel.css';
@@ -52,7 +53,7 @@ export class App {
   private readonly stream = new Stream(
     placeOf(location.href),
     (report) => this.handle(report),
-    sessionStorage,
+    shelfOf(window, 'sessionStorage'),
   );
   private readonly whole = new WholePicture(() => this.stream.refresh());
   private readonly playout = new Playout(this.stream);

@@ -12,6 +12,8 @@ using SimulationClass = pybind11::class_<HeldSimulation>;
 void bind_scenes(pybind11::module_& module);
 /// The decoder of frames.
 void bind_frames(pybind11::module_& module);
+/// Writer and reader of recordings.
+void bind_recordings(pybind11::module_& module);
 /// Creation, time and snapshots.
 void bind_simulation(SimulationClass& simulation);
 /// Views of bodies.

@@ -8,6 +8,7 @@
 #include "protocol/frame/frame_codec.h"
 #include "protocol/frame/frame_layout.h"
 #include "protocol/python/native/bindings.h"
+#include "protocol/python/native/frame_dict.h"
 
 namespace py = pybind11;
 
@@ -62,7 +63,9 @@ py::dict body_of(const GridFrame& frame, const GridBlock& block) {
   return dict;
 }
 
-py::dict frame_of(const GridFrame& frame) {
+}  // namespace
+
+py::dict frame_dict(const GridFrame& frame) {
   py::dict dict;
   dict["number"] = frame.header.number;
   dict["epoch"] = frame.header.epoch;
@@ -88,13 +91,11 @@ py::dict frame_of(const GridFrame& frame) {
   return dict;
 }
 
-}  // namespace
-
 void bind_frames(py::module_& module) {
   py::class_<FrameDecoder>(module, "FrameDecoder")
       .def(py::init())
       .def("decode", [](FrameDecoder& decoder, const py::bytes& bytes) {
-        return frame_of(*value_of(decoder.decode(bytes_of(bytes))));
+        return frame_dict(*value_of(decoder.decode(bytes_of(bytes))));
       });
   module.def("frame_number", [](const py::bytes& bytes) {
     const std::span<const std::uint8_t> frame = bytes_of(bytes);

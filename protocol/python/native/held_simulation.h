@@ -32,7 +32,8 @@ class HeldSimulation {
   class Turn {
    public:
     explicit Turn(HeldSimulation& held);
-    const Simulation* operator->() const { return &*held_.content_->simulation; }
+    const Simulation& get() const { return *held_.content_->simulation; }
+    const Simulation* operator->() const { return &get(); }
     /// Returns the simulation for a change. Views keep their values.
     Simulation& change();
     /// Returns a read-only array of `count` rows of three numbers or, without `rows`, of `count`

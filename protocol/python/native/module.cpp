@@ -6,6 +6,7 @@
 PYBIND11_MODULE(_native, module) {
   vat::python::bind_scenes(module);
   vat::python::bind_frames(module);
+  vat::python::bind_recordings(module);
   vat::python::SimulationClass simulation(module, "Simulation");
   vat::python::bind_simulation(simulation);
   vat::python::bind_bodies(simulation);

@@ -18,7 +18,7 @@ std::unique_ptr<HeldSimulation> create(const std::string& text, const std::strin
   return std::make_unique<HeldSimulation>(scene, threads, instructions);
 }
 
-py::dict to_dict(const GuardEvent& event) {
+py::dict event_dict(const GuardEvent& event) {
   py::dict dict;
   dict["cause"] = to_string(event.cause);
   dict["time"] = event.time;
@@ -53,7 +53,7 @@ struct Totals {
     dict["force_evaluations"] = report.force_evaluations;
     dict["particle_evaluations"] = report.particle_evaluations;
     py::list events;
-    for (const GuardEvent& event : report.events) events.append(python::to_dict(event));
+    for (const GuardEvent& event : report.events) events.append(event_dict(event));
     dict["events"] = events;
     dict["failed"] = report.failed;
     return dict;

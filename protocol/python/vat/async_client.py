@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 from vat.exchange import Exchange
 from vat.frames import Frame
+from vat.session import Session
 from vat.websocket import CLOSE, Address, Closed, Handshake, encode
 
 Value = TypeVar("Value")
@@ -19,6 +20,7 @@ class AsyncClient:
     def __init__(self, url: str = "ws://127.0.0.1:8080/ws", timeout: float = 10,
                  tls: ssl.SSLContext | None = None) -> None:
         """`timeout` [s] is for each reply. `tls` has trusted certificates. None: the system's."""
+        self.url = url
         self._address = Address.parse(url)
         self._tls = tls
         self.timeout = timeout
@@ -61,6 +63,12 @@ class AsyncClient:
         replies = self._exchange.replies
         await self._wait(lambda: True if identity in replies else None, None)
         return self._exchange.take_reply(identity)
+
+    async def join(self, session: str | None = None, **params: Any) -> Session:
+        """Joins a session, by default the first. `params` are those of session.join."""
+        if session is not None:
+            params["session"] = session
+        return Session.joined(self.url, await self.call("session.join", **params))
 
     async def notify(self, method: str, **params: Any) -> None:
         """Sends a notification, which has no reply."""

@@ -8,6 +8,7 @@ from typing import Any
 
 from vat.exchange import Exchange
 from vat.frames import Frame
+from vat.session import Session
 from vat.websocket import CLOSE, Address, Closed, Handshake, encode
 
 
@@ -22,6 +23,7 @@ class Client:
                  tls: ssl.SSLContext | None = None) -> None:
         """`timeout` [s] is for each reply. `tls` has trusted certificates. None: the system's."""
         address = Address.parse(url)
+        self.url = url
         self.timeout = timeout
         self._exchange = Exchange()
         self._early = b""  # received with the reply to the handshake
@@ -63,6 +65,12 @@ class Client:
         while identity not in self._exchange.replies:
             self._take(deadline)
         return self._exchange.take_reply(identity)
+
+    def join(self, session: str | None = None, **params: Any) -> Session:
+        """Joins a session, by default the first. `params` are those of session.join."""
+        if session is not None:
+            params["session"] = session
+        return Session.joined(self.url, self.call("session.join", **params))
 
     def notify(self, method: str, **params: Any) -> None:
         """Sends a notification, which has no reply."""

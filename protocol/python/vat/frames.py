@@ -64,6 +64,10 @@ class FrameDecoder:
         """Returns the frame. Raises InputError if a byte does not conform to FRAMES.md. The code
         missing_reference means that an earlier frame is missing.
         """
-        values: dict[str, Any] = self._native.decode(data)
-        bodies = [FrameBody(**body) for body in values.pop("bodies")]
-        return Frame(bodies=bodies, **values)
+        return to_frame(self._native.decode(data))
+
+
+def to_frame(values: dict[str, Any]) -> Frame:
+    """Returns the frame of the values of a native decoder."""
+    bodies = [FrameBody(**body) for body in values.pop("bodies")]
+    return Frame(bodies=bodies, **values)

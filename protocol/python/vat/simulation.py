@@ -2,6 +2,7 @@
 
 import json
 import os
+import tempfile
 from collections.abc import Iterator, Mapping
 from typing import Any, cast
 
@@ -10,10 +11,13 @@ from numpy.typing import NDArray
 
 from vat import _native
 from vat.errors import StepError
+from vat.recording import Recording
 from vat.results import Advance, BodyDiagnostics, Diagnostics, Event, Pose, Quaternion, Vector
 from vat.scenes import SceneSource, scene_text
 
 Numbers = NDArray[np.float64]
+
+PICTURE_SECONDS = 2.0  # simulated time that a notebook shows of a simulation
 
 
 class Body:
@@ -223,6 +227,30 @@ class Simulation:
         arithmetic.
         """
         self._host.restore(snapshot)
+
+    # Pictures
+
+    def record(self, file: str | os.PathLike[str], seconds: float, *, every: float | None = None,
+               max_error: float | None = None) -> Recording:
+        """Advances the simulation by a time [s] and writes its frames to a file in .vatrec.
+
+        `every` is the time between two frames [s], by default a tick, rounded to whole steps.
+        `max_error` is the greatest error of a position [m], by default a hundredth of the spacing.
+        """
+        steps = max(1, round((every or self.tick) / self.step_size))
+        recorder = _native.Recorder(os.fspath(file), steps * self.step_size, max_error)
+        recorder.add(self._host)
+        for _ in range(round(seconds / self.step_size) // steps):
+            self.step(steps)
+            recorder.add(self._host)
+        recorder.finish()
+        return Recording(file)
+
+    def _repr_html_(self) -> str:
+        """Returns a picture of the next PICTURE_SECONDS. The simulation does not advance."""
+        with tempfile.TemporaryDirectory() as folder:
+            copy = Simulation.load(self.snapshot())
+            return copy.record(os.path.join(folder, "picture.vatrec"), PICTURE_SECONDS)._repr_html_()
 
     # Commands
 

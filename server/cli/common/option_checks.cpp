@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/support/nearest_name.h"
-#include "server/output/text.h"
+#include "protocol/files/text.h"
 
 namespace vat {
 

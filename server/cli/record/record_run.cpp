@@ -5,8 +5,8 @@
 #include <sstream>
 #include <utility>
 
+#include "protocol/recording/recording_file.h"
 #include "server/cli/simulate/simulate_progress.h"
-#include "server/recording/recording_file.h"
 
 namespace vat {
 namespace {

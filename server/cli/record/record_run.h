@@ -6,10 +6,10 @@
 
 #include "core/simulation/simulation.h"
 #include "core/support/result.h"
+#include "protocol/recording/frame_recorder.h"
+#include "protocol/recording/recording_writer.h"
 #include "server/cli/simulate/simulate_interrupt.h"
 #include "server/cli/simulate/simulate_run.h"
-#include "server/recording/frame_recorder.h"
-#include "server/recording/recording_writer.h"
 #include "server/recording/resume_state.h"
 
 namespace vat {

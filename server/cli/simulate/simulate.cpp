@@ -11,7 +11,9 @@
 #include "core/limits.h"
 #include "core/numerics/choose_numerics.h"
 #include "core/simulation/simulation.h"
+#include "core/threads/thread_pool.h"
 #include "core/validation/validate.h"
+#include "protocol/files/text.h"
 #include "server/cli/common/command.h"
 #include "server/cli/common/data_folders.h"
 #include "server/cli/common/option_checks.h"
@@ -23,8 +25,6 @@
 #include "server/cli/simulate/simulate_schedule.h"
 #include "server/output/diagnostics_writer.h"
 #include "server/output/frame_writer.h"
-#include "server/output/text.h"
-#include "core/threads/thread_pool.h"
 
 namespace vat {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "server/output/text.h"
+#include "protocol/files/text.h"
 
 namespace vat {
 

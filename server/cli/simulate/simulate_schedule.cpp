@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/limits.h"
-#include "server/output/text.h"
+#include "protocol/files/text.h"
 
 namespace vat {
 

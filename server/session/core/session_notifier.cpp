@@ -3,9 +3,9 @@
 #include <utility>
 
 #include "core/support/check.h"
+#include "protocol/frame/frame_domain.h"
+#include "protocol/messages/describe.h"
 #include "protocol/scene/level.h"
-#include "server/frames/frame_domain.h"
-#include "server/messages/describe.h"
 #include "server/session/core/playback.h"
 
 namespace vat {

@@ -6,7 +6,7 @@
 #include <random>
 #include <stdexcept>
 
-#include "server/frames/frame_domain.h"
+#include "protocol/frame/frame_domain.h"
 #include "tests/bench/codec/stream.h"
 
 namespace vat::bench {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/scene/scene.h"
-#include "protocol/frame/published_state.h"
+#include "protocol/published/published_state.h"
 
 namespace vat::bench {
 

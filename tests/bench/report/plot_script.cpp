@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/support/check.h"
-#include "server/output/text.h"
+#include "protocol/files/text.h"
 #include "tests/bench/report/plot.h"
 
 namespace vat::bench {

@@ -7,8 +7,8 @@
 
 #include "core/support/check.h"
 #include "core/support/instruction_set.h"
-#include "server/output/output_file.h"
-#include "server/output/text.h"
+#include "protocol/files/output_file.h"
+#include "protocol/files/text.h"
 
 namespace vat::bench {
 

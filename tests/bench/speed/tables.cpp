@@ -6,7 +6,7 @@
 #include <iomanip>
 #include <string>
 
-#include "server/output/text.h"
+#include "protocol/files/text.h"
 
 namespace vat::bench {
 

@@ -5,7 +5,8 @@ import { createInterface } from 'node:readline';
 
 const kStartMs = 60_000;
 
-function program(): string {
+/** Returns the path of the built program. */
+export function program(): string {
   const path = process.env.VAT_PROGRAM;
   if (!path) throw new Error('VAT_PROGRAM must be the path of the built program `vat`');
   return path;

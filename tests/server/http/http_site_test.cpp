@@ -91,11 +91,14 @@ class HttpSite : public testing::Test {
   HttpHandler make_site(const fs::path& dist) {
     Result<StaticFiles> files = StaticFiles::read(dist);
     EXPECT_TRUE(files.ok());
-    return make_http_site(
-        std::move(files).value(),
-        {[] { return "vat_threads 4\n"; }, [] { return R"({"traceEvents":[]})"; },
-         [](std::string_view authorization) { return authorization != "wrong"; },
-         [this] { return phase; }, [] { return R"({"status":"ok"})"; }, R"({"version":"1.2.3"})"});
+    return make_http_site(std::move(files).value(),
+                          {[] { return "vat_threads 4\n"; },
+                           [] { return R"({"traceEvents":[]})"; },
+                           [](std::string_view authorization) { return authorization != "wrong"; },
+                           [this] { return phase; },
+                           [] { return R"({"status":"ok"})"; },
+                           R"({"version":"1.2.3"})",
+                           {"https://a.example", "http://b.example:8888"}});
   }
 
   const TemporaryFolder folder;
@@ -178,8 +181,9 @@ TEST_F(HttpSite, EveryAnswerHasTheSecurityHeaders) {
     EXPECT_EQ(header(reply, "Referrer-Policy"), "no-referrer") << target;
     EXPECT_EQ(header(reply, "Cross-Origin-Resource-Policy"), "same-origin") << target;
     const std::string policy = header(reply, "Content-Security-Policy");
-    for (const char* part : {"default-src 'none'", "script-src 'self'", "style-src 'self'",
-                             "base-uri 'none'", "form-action 'none'", "frame-ancestors 'self'"}) {
+    for (const char* part :
+         {"default-src 'none'", "script-src 'self'", "style-src 'self'", "base-uri 'none'",
+          "form-action 'none'", "frame-ancestors 'self' https://a.example http://b.example:8888"}) {
       EXPECT_THAT(policy, HasSubstr(part)) << target;
     }
     EXPECT_EQ(policy.find("unsafe"), std::string::npos) << target;

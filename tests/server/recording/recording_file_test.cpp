@@ -1,9 +1,9 @@
-#include "server/recording/recording_file.h"
+#include "protocol/recording/recording_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "server/recording/recording_writer.h"
+#include "protocol/recording/recording_writer.h"
 #include "server/recording/resume_state.h"
 #include "tests/support/scenes.h"
 #include "tests/support/temporary_folder.h"

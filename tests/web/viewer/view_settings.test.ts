@@ -7,7 +7,8 @@ import {
   settingsToText,
 } from '../../../web/viewer/view/base/settings';
 import { linkedSettings, SettingsStore } from '../../../web/viewer/view/base/settings_store';
-import type { Shelf } from '../../../web/viewer/view/base/settings_store';
+import { kNoShelf, shelfOf } from '../../../web/viewer/view/base/shelf';
+import type { Shelf } from '../../../web/viewer/view/base/shelf';
 
 function shelf(text: string | null = null): Shelf & { text: string | null } {
   return {
@@ -81,6 +82,19 @@ describe('SettingsStore', () => {
     const forgetful = new SettingsStore({ getItem: refuse, setItem: refuse });
     forgetful.change({ liquid: 'fluid' });
     expect(forgetful.settings.liquid).toBe('fluid');
+  });
+
+  it('works in a frame whose browser denies access to the storage', () => {
+    const kept = shelf('liquid:splats');
+    const denied = {
+      sessionStorage: kept,
+      get localStorage(): Shelf {
+        throw new DOMException('access is denied', 'SecurityError');
+      },
+    };
+    expect(shelfOf(denied, 'sessionStorage')).toBe(kept);
+    expect(shelfOf(denied, 'localStorage')).toBe(kNoShelf);
+    expect(new SettingsStore(shelfOf(denied, 'localStorage')).text).toBe('');
   });
 });
 

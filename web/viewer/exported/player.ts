@@ -5,17 +5,20 @@ import { showObstacle, watchGraphics } from '../panel/obstacle';
 import { ReplayBar } from '../replay/replay_bar';
 import { now } from '../stream/clock';
 import { Playout } from '../stream/playout';
-import { placeOf, Stream } from '../stream/stream';
-import type { Report } from '../stream/stream';
+import { Stream } from '../stream/stream';
+import type { Place, Report } from '../stream/stream';
 import { View } from '../view/view';
 import '../style.css';
 import '../view/stage.css';
 import './player.css';
 
+/** The page has no server. Its address may be a data: URL, to which no address is relative. */
+const kNoPlace: Place = { url: '', session: undefined, token: undefined, base: location.href };
+
 /** The page of an exported recording: the picture and the time line. */
 class Player {
   private readonly canvas = element('view', HTMLCanvasElement);
-  private readonly stream = new Stream(placeOf(location.href), (report) => this.handle(report));
+  private readonly stream = new Stream(kNoPlace, (report) => this.handle(report));
   private readonly playout = new Playout(this.stream);
   private readonly view = new View(this.canvas, this.stream, this.playout, () => this.draw());
   private readonly bar: ReplayBar;

@@ -7,6 +7,7 @@ import type { LiquidStyle } from './base/liquid_style';
 import { Pace } from './base/pace';
 import type { ViewSettings } from './base/settings';
 import { linkedSettings, SettingsStore } from './base/settings_store';
+import { shelfOf } from './base/shelf';
 import { sharedUniforms } from './bodies/shared_uniforms';
 import type { SunShadow } from './shadow/sun_shadow';
 import { Stage } from './stage';
@@ -49,7 +50,10 @@ export class View {
     private readonly source: FrameSource,
     private readonly motion: Motion,
     beforeDraw: () => void,
-    readonly settings = new SettingsStore(localStorage, linkedSettings(location.href)),
+    readonly settings = new SettingsStore(
+      shelfOf(window, 'localStorage'),
+      linkedSettings(location.href),
+    ),
   ) {
     this.stage = new Stage(canvas, this.shared, beforeDraw);
     this.stage.onDrawn = (at, follows) => this.watchPace(at, follows);

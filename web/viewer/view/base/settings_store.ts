@@ -1,10 +1,8 @@
 import { settingsFromText, settingsToText } from './settings';
 import type { ViewSettings } from './settings';
+import type { Shelf } from './shelf';
 
 const kKey = 'vat.view';
-
-/** The storage of settings between visits: localStorage or a substitute. */
-export type Shelf = Pick<Storage, 'getItem' | 'setItem'>;
 
 /** The settings of the view. Subscribers are notified of each change. */
 export class SettingsStore {

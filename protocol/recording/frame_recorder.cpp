@@ -1,12 +1,12 @@
-#include "server/recording/frame_recorder.h"
+#include "protocol/recording/frame_recorder.h"
 
 #include <algorithm>
 #include <utility>
 
 #include "core/support/check.h"
+#include "protocol/frame/frame_domain.h"
+#include "protocol/messages/describe.h"
 #include "protocol/scene/level.h"
-#include "server/frames/frame_domain.h"
-#include "server/messages/describe.h"
 
 namespace vat {
 namespace {

@@ -1,4 +1,4 @@
-#include "server/recording/recording_writer.h"
+#include "protocol/recording/recording_writer.h"
 
 #include <algorithm>
 #include <utility>

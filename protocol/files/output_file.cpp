@@ -1,4 +1,4 @@
-#include "server/output/output_file.h"
+#include "protocol/files/output_file.h"
 
 #include <cerrno>
 #include <cstring>

@@ -1,4 +1,4 @@
-#include "server/recording/html_page.h"
+#include "protocol/recording/html_page.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Geometry>
 #include <optional>
 
 #include "core/scene/scene.h"

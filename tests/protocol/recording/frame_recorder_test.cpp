@@ -1,11 +1,11 @@
-#include "server/recording/frame_recorder.h"
+#include "protocol/recording/frame_recorder.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "protocol/frame/frame_domain.h"
 #include "protocol/json/json_reader.h"
 #include "protocol/scene/scene_json.h"
-#include "server/frames/frame_domain.h"
 #include "tests/support/scenes.h"
 
 // Frames of a recording: their precision, their key frames, and the continuation.

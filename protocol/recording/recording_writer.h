@@ -4,10 +4,10 @@
 #include <string>
 
 #include "core/support/result.h"
+#include "protocol/files/output_file.h"
+#include "protocol/recording/frame_recorder.h"
+#include "protocol/recording/recording_file.h"
 #include "protocol/recording/recording_index.h"
-#include "server/output/output_file.h"
-#include "server/recording/frame_recorder.h"
-#include "server/recording/recording_file.h"
 
 namespace vat {
 

@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "core/support/check.h"
-#include "protocol/frame/published_state.h"
+#include "protocol/published/published_state.h"
 
 namespace vat {
 namespace {

@@ -8,9 +8,6 @@
 /// JSON descriptions of a simulation (PROTOCOL.md).
 namespace vat {
 
-Json to_json(const Vec3& vector);
-Json to_json(const Quat& orientation);
-
 /// Returns the `bodies` of a session's description. The bodies do not change within an epoch.
 Json describe_bodies(const Simulation& simulation);
 /// Returns the `materials` of a session's description: names, complete appearances, and

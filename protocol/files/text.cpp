@@ -1,4 +1,4 @@
-#include "server/output/text.h"
+#include "protocol/files/text.h"
 
 #include <cstdio>
 

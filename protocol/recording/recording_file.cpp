@@ -1,4 +1,4 @@
-#include "server/recording/recording_file.h"
+#include "protocol/recording/recording_file.h"
 
 #include <algorithm>
 #include <cerrno>

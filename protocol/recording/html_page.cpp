@@ -1,4 +1,4 @@
-#include "server/recording/html_page.h"
+#include "protocol/recording/html_page.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -6,9 +6,9 @@
 #include <iterator>
 #include <utility>
 
+#include "protocol/files/output_file.h"
 #include "protocol/json/json_reader.h"
-#include "server/output/output_file.h"
-#include "server/recording/recording_file.h"
+#include "protocol/recording/recording_file.h"
 
 namespace vat {
 namespace {

@@ -1,13 +1,13 @@
-#include "server/messages/describe.h"
+#include "protocol/messages/describe.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/sampling/lattice.h"
 #include "core/support/check.h"
+#include "protocol/files/text.h"
 #include "protocol/scene/appearance.h"
 #include "protocol/scene/scene_json.h"
-#include "server/output/text.h"
 
 namespace vat {
 namespace {
@@ -74,14 +74,6 @@ Json describe_body(const BodyView& body, const BodyDescription& described, int d
 }
 
 }  // namespace
-
-Json to_json(const Vec3& vector) {
-  return {vector.x(), vector.y(), vector.z()};
-}
-
-Json to_json(const Quat& orientation) {
-  return {orientation.w(), orientation.x(), orientation.y(), orientation.z()};
-}
 
 Json describe_bodies(const Simulation& simulation) {
   const Scene& scene = simulation.scene();

@@ -1,4 +1,4 @@
-#include "server/frames/frame_domain.h"
+#include "protocol/frame/frame_domain.h"
 
 #include <gtest/gtest.h>
 
