@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
-# Tests the Debian package in a bare Debian 12 that systemd boots in a folder: the service serves the
-# page, keeps its sessions when the package is upgraded, and leaves nothing when it is purged. Needs
-# root, debootstrap, systemd-container and lintian. Usage: package-check.sh PACKAGE.deb
+# Tests the Debian packages in a bare Debian 12 that systemd boots in a folder: the service serves the
+# page, keeps its sessions when the package is upgraded, and leaves nothing when it is purged; Python
+# finds its package. Needs root, debootstrap, systemd-container and lintian.
+# Usage: package-check.sh vat_VERSION_amd64.deb python3-vat_VERSION_amd64.deb
 #
 # From the environment: MIRROR (a Debian mirror), BASE (an earlier debootstrap folder to copy).
 set -euo pipefail
 
 package=$(readlink -f -- "$1")
+python_package=$(readlink -f -- "$2")
 mirror=${MIRROR:-http://deb.debian.org/debian}
 work=$(mktemp -d -p /var/tmp)
 machine=$work/machine
@@ -43,9 +45,10 @@ make_upgrade() {
 
 install_package() {
   cp -- "$package" "$machine/srv/vat.deb"
+  cp -- "$python_package" "$machine/srv/python3-vat.deb"
   mount -t proc proc "$machine/proc"
   chroot "$machine" sh -c 'apt-get update && DEBIAN_FRONTEND=noninteractive apt-get install --yes \
-    --no-install-recommends systemd-sysv dbus curl /srv/vat.deb' >"$work/log" 2>&1 ||
+    --no-install-recommends systemd-sysv dbus curl /srv/vat.deb /srv/python3-vat.deb' >"$work/log" 2>&1 ||
     { cat "$work/log" && fail "apt-get install"; }
   umount "$machine/proc"
 }
@@ -66,6 +69,18 @@ END
 {"call": "session.join", "params": {"session": "s2"}, "result": {"description": {"bodies": [{"name": "ball", "body": "$ball"}]}}}
 {"call": "state.query", "params": {"bodies": ["$ball"]}, "result": {"time": {"$near": [0.5, 1e-9]}, "bodies": [{"velocity": {"$near": [[0, 0, -4.905], 1e-9]}}]}}
 END
+  cat >"$machine/srv/check.py" <<'END'
+import vat
+
+simulation = vat.Simulation("dam-break")
+simulation.advance(0.1)
+assert simulation["column"].positions.shape == (2000, 3)
+assert "<iframe" in simulation._repr_html_()
+with vat.Client("ws://127.0.0.1:8080/ws") as client:
+    client.join()
+    client.call("frames.subscribe")
+    assert client.next_frame().bodies
+END
   cat >"$machine/srv/check.sh" <<'END'
 set -eux
 trap 'test $? = 0 || journalctl --no-pager --unit vat | tail -n 20' EXIT
@@ -74,6 +89,8 @@ ready
 curl --silent --fail http://127.0.0.1:8080/ | grep -q '<script'
 systemd-analyze security vat.service | tail -n 1
 vat script --server ws://127.0.0.1:8080 /srv/make.jsonl
+python3 /srv/check.py
+apt-get purge --yes python3-vat # it needs the same version of vat
 before=$(systemctl show --property MainPID vat)
 apt-get install --yes /srv/upgrade.deb
 ready
@@ -115,7 +132,7 @@ boot() {
 main() {
   ((EUID == 0)) || fail "needs root"
   trap clean_up EXIT
-  lintian --fail-on error --allow-root "$package" || fail "lintian"
+  lintian --fail-on error --allow-root "$package" "$python_package" || fail "lintian"
   make_machine
   install_package
   make_upgrade
