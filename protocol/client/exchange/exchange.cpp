@@ -123,8 +123,8 @@ void Exchange::finish_rejoin(const Json& result) {
   SessionJoin::Result joined;
   read_json(result, joined);  // remember() has checked it
   if (handlers_.on_rejoined) handlers_.on_rejoined(joined);
-  // The server restores only the subscription of a resumed participant.
-  if (joined.resumed || subscription_.is_null()) return become_open();
+  if (subscription_.is_null()) return become_open();
+  // Also for a resumed participant: a server that was killed can have lost the subscription.
   request("frames.subscribe", subscription_, [this](const Json&) { become_open(); });
 }
 

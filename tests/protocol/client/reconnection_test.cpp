@@ -25,8 +25,12 @@ TEST_F(ClientExchange, ResumesTheParticipantAfterAReconnection) {
   EXPECT_EQ(outcomes_.back(), "disconnected");  // it would precede the join
   reply(join, make_joined(true, "secret"));
   EXPECT_THAT(rejoined, ElementsAre(true));
+  EXPECT_NE(exchange_.state(), ConnectionState::open);
+  const Json subscribe = sent();
+  EXPECT_EQ(subscribe.at("method"), "frames.subscribe");
+  EXPECT_EQ(subscribe.at("params"), Json({{"max_error", 0.01}}));
+  reply(subscribe, {{"tick", 9}});
   EXPECT_EQ(exchange_.state(), ConnectionState::open);
-  EXPECT_EQ(sent(), nullptr);  // the server restores the subscription
 }
 
 TEST_F(ClientExchange, ANewParticipantSubscribesAgain) {
