@@ -58,7 +58,8 @@ class Client::Impl {
     if (failure_) throw ConnectError(*failure_);
   }
 
-  void start_call(const char* method, Json params, std::function<void(Outcome<Json>)> settle) {
+  void start_call(const char* method, Json params,
+                  const std::function<void(Outcome<Json>)>& settle) {
     const auto refused =
         calls_.add({method, std::move(params), Clock::now() + options_.call_timeout, settle},
                    CallList::Origin::application);
@@ -198,8 +199,8 @@ Client::Client(const std::string& url, Options options, Handlers handlers)
 Client::~Client() = default;
 
 void Client::start_call(const char* method, Json params,
-                        std::function<void(Outcome<Json>)> settle) {
-  impl_->start_call(method, std::move(params), std::move(settle));
+                        const std::function<void(Outcome<Json>)>& settle) {
+  impl_->start_call(method, std::move(params), settle);
 }
 
 bool Client::start_notification(const char* method, const Json& params) {

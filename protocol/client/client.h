@@ -59,7 +59,8 @@ class Client {
 
  private:
   class Impl;
-  void start_call(const char* method, Json params, std::function<void(Outcome<Json>)> settle);
+  void start_call(const char* method, Json params,
+                  const std::function<void(Outcome<Json>)>& settle);
   bool start_notification(const char* method, const Json& params);
 
   std::unique_ptr<Impl> impl_;

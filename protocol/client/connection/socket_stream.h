@@ -21,6 +21,7 @@ namespace vat::client {
 /// Operations.
 class SocketStream {
  public:
+  // NOLINTNEXTLINE(readability-identifier-naming): the name that Boost.Asio requires
   using executor_type = boost::asio::io_context::executor_type;
   using ErrorCode = boost::system::error_code;
   using Handler = std::function<void(ErrorCode, std::size_t)>;

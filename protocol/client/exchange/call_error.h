@@ -52,13 +52,21 @@ class [[nodiscard]] Outcome {
   explicit operator bool() const { return ok(); }
   /// Returns the result. Throws the CallError of a failed call.
   Value& value() {
-    if (!ok()) throw error();
+    throw_error();
+    return std::get<Value>(content_);
+  }
+  const Value& value() const {
+    throw_error();
     return std::get<Value>(content_);
   }
   /// Returns the error of a failed call. Throws std::bad_variant_access if the call succeeded.
   const CallError& error() const { return std::get<CallError>(content_); }
 
  private:
+  void throw_error() const {
+    if (!ok()) throw CallError(error());
+  }
+
   std::variant<Value, CallError> content_;
 };
 

@@ -1,7 +1,7 @@
 #include "protocol/client/exchange/call_list.h"
 
 #include <algorithm>
-#include <ranges>
+#include <utility>
 
 namespace vat::client {
 namespace {
@@ -64,7 +64,7 @@ std::vector<Call> CallList::close() {
   output_.clear();
   output_bytes_ = 0;
   std::vector<Call> all;
-  for (Call& call : calls_ | std::views::values) all.push_back(std::move(call));
+  for (auto& [id, call] : calls_) all.push_back(std::move(call));
   calls_.clear();
   return all;
 }
@@ -77,7 +77,7 @@ void CallList::open() {
 Time CallList::next_deadline() const {
   const std::lock_guard lock(mutex_);
   Time next = Time::max();
-  for (const Call& call : calls_ | std::views::values) next = std::min(next, call.deadline);
+  for (const auto& [id, call] : calls_) next = std::min(next, call.deadline);
   return next;
 }
 

@@ -49,7 +49,8 @@ bool is_final(const CallError& error) {
 }
 
 CallError make_error(const Json& error) {
-  const Json data = error.value("data", Json::object());
+  Json data = error.value("data", Json());
+  if (!data.is_object()) data = Json::object();
   return {data.value("kind", "error"), error.value("message", ""), error.value("code", 0), data};
 }
 
@@ -97,7 +98,7 @@ void Exchange::enter_with(const std::vector<std::string>& tokens, bool needs_tok
     if (!needs_token) return rejoin();
     return fail(CallError("not_authenticated", "the server needs a valid token"));
   }
-  start_call("access.enter", {{"token", tokens.front()}}, [=, this](Outcome<Json> outcome) {
+  start_call("access.enter", {{"token", tokens.front()}}, [=, this](const Outcome<Json>& outcome) {
     if (outcome) return rejoin();
     if (outcome.error().kind() != "not_authenticated") return fail(outcome.error());
     enter_with({tokens.begin() + 1, tokens.end()}, needs_token);
@@ -109,7 +110,7 @@ void Exchange::rejoin() {
   Json params = join_params_;
   params["session"] = *session_;
   params["resume"] = resume_;
-  start_call("session.join", params, [this](Outcome<Json> outcome) {
+  start_call("session.join", params, [this](const Outcome<Json>& outcome) {
     if (outcome) return finish_rejoin(outcome.value());
     if (!has_session_ended_ || outcome.error().kind() != "no_such_session") {
       return fail(outcome.error());
@@ -140,8 +141,9 @@ void Exchange::forget_session() {
   subscription_ = {};
 }
 
-void Exchange::request(const char* method, Json params, std::function<void(const Json&)> proceed) {
-  start_call(method, std::move(params), [=, this](Outcome<Json> outcome) {
+void Exchange::request(const char* method, Json params,
+                       const std::function<void(const Json&)>& proceed) {
+  start_call(method, std::move(params), [=, this](const Outcome<Json>& outcome) {
     if (!outcome) return fail(outcome.error());
     try {
       proceed(outcome.value());
@@ -152,7 +154,7 @@ void Exchange::request(const char* method, Json params, std::function<void(const
 }
 
 void Exchange::start_call(const char* method, Json params,
-                          std::function<void(Outcome<Json>)> settle) {
+                          const std::function<void(Outcome<Json>)>& settle) {
   const auto refused = calls_.add({method, std::move(params), now_ + options_.timeout, settle},
                                   CallList::Origin::client);
   if (refused) settle(*refused);

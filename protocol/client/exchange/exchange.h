@@ -51,8 +51,9 @@ class Exchange {
   void fail_calls(const std::string& reason);
   /// Calls a method for the client itself. `proceed` receives the result. If the call fails, the
   /// client reconnects or closes.
-  void request(const char* method, Json params, std::function<void(const Json&)> proceed);
-  void start_call(const char* method, Json params, std::function<void(Outcome<Json>)> settle);
+  void request(const char* method, Json params, const std::function<void(const Json&)>& proceed);
+  void start_call(const char* method, Json params,
+                  const std::function<void(Outcome<Json>)>& settle);
   void fail(const CallError& error);
 
   void enter_with(const std::vector<std::string>& tokens, bool needs_token);

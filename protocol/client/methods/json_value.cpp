@@ -1,7 +1,6 @@
 #include "protocol/client/methods/json_value.h"
 
-#include <limits>
-#include <type_traits>
+#include <utility>
 
 namespace vat::client {
 namespace {
@@ -9,13 +8,9 @@ namespace {
 template <class Number>
 void read_integer(const Json& json, Number& value) {
   if (!json.is_number_integer()) throw InvalidValue("is not an integer");
-  const auto fits = [&] {
-    if (json.is_number_unsigned()) {
-      return json.get<std::uint64_t>() <= std::uint64_t{std::numeric_limits<Number>::max()};
-    }
-    return std::is_signed_v<Number>;
-  };
-  if (!fits()) throw InvalidValue("is outside the range of its type");
+  const bool fits = json.is_number_unsigned() ? std::in_range<Number>(json.get<std::uint64_t>())
+                                              : std::in_range<Number>(json.get<std::int64_t>());
+  if (!fits) throw InvalidValue("is outside the range of its type");
   value = json.get<Number>();
 }
 

@@ -104,7 +104,8 @@ TEST_F(ClientExchange, ReportsInvalidMessages) {
     EXPECT_EQ(faults_.size(), 1U) << text;
   }
   faults_.clear();
-  receive({{"id", nullptr}, {"error", {{"code", -32700}, {"message", "not JSON"}, {"data", {}}}}});
+  receive({{"id", nullptr},
+           {"error", {{"code", -32700}, {"message", "not JSON"}, {"data", Json::object()}}}});
   EXPECT_THAT(faults_, ElementsAre("not JSON"));
   EXPECT_EQ(exchange_.state(), ConnectionState::open);
 }
