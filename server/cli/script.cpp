@@ -38,7 +38,7 @@ struct ScriptOptions {
 
 std::string check_url(const std::string& text) {
   try {
-    script::read_websocket_url(text);
+    client::read_websocket_url(text);
     return {};
   } catch (const std::invalid_argument& fault) {
     return fault.what();
@@ -74,7 +74,7 @@ bool is_trust_of_use(const script::PlaySettings& settings) {
 int play_all(ScriptOptions& options) {
   script::PlaySettings& settings = options.play;
   settings.patience = std::chrono::milliseconds(static_cast<std::int64_t>(options.patience * 1000));
-  if (!options.server.empty()) settings.server = script::read_websocket_url(options.server);
+  if (!options.server.empty()) settings.server = client::read_websocket_url(options.server);
   if (!is_trust_of_use(settings)) {
     std::cerr << "--ca and --insecure apply to servers with TLS, at wss://\n";
     return kExitUsage;

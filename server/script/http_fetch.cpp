@@ -5,7 +5,7 @@
 #include <boost/beast/http.hpp>
 #include <cctype>
 
-#include "server/script/socket_stream.h"
+#include "protocol/client/connection/socket_stream.h"
 
 namespace vat::script {
 namespace {
@@ -35,10 +35,10 @@ Json to_json(const http::response<http::string_body>& response) {
 
 }  // namespace
 
-Json fetch_http(const WebSocketUrl& url, const TlsTrust& trust, const std::string& path,
-                std::chrono::steady_clock::time_point deadline) {
-  Operations operations;
-  SocketStream stream(operations.context(), url, trust);
+Json fetch_http(const client::WebSocketUrl& url, const client::TlsTrust& trust,
+                const std::string& path, std::chrono::steady_clock::time_point deadline) {
+  client::Operations operations;
+  client::SocketStream stream(operations.context(), url, trust);
   stream.open(deadline);
   http::request<http::empty_body> request(http::verb::get, path, kHttp11);
   request.set(http::field::host, url.authority());

@@ -3,8 +3,8 @@
 #include <chrono>
 #include <string>
 
+#include "protocol/client/connection/websocket_url.h"
 #include "server/script/pattern.h"
-#include "server/script/websocket_url.h"
 
 namespace vat::script {
 
@@ -12,7 +12,7 @@ namespace vat::script {
 /// `status`, `size` (bytes of the body), `headers` (keys in lower case), and `text` (the body).
 /// `text` is absent for `application/octet-stream`. Throws std::runtime_error if no response
 /// arrives before the deadline.
-Json fetch_http(const WebSocketUrl& url, const TlsTrust& trust, const std::string& path,
-                std::chrono::steady_clock::time_point deadline);
+Json fetch_http(const client::WebSocketUrl& url, const client::TlsTrust& trust,
+                const std::string& path, std::chrono::steady_clock::time_point deadline);
 
 }  // namespace vat::script

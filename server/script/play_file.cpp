@@ -59,16 +59,24 @@ std::unique_ptr<Transcript> open_transcript(const std::string& path, const PlayS
   return std::make_unique<Transcript>(settings.transcript_folder, name);
 }
 
-void play_lines(const std::string& path, const std::vector<Line>& lines, const WebSocketUrl& url,
-                const PlaySettings& settings) {
+/// Connects as connect_websocket(). The error of an untrusted server names the options of the
+/// command.
+client::Connected connect(const client::ConnectRequest& request, const client::WebSocketUrl& url,
+                          const PlaySettings& settings) try {
+  return client::connect_websocket(url, settings.trust, request,
+                                   std::chrono::steady_clock::now() + settings.patience);
+} catch (const client::UntrustedServer& error) {
+  throw std::runtime_error(error.what() + std::string("; --ca FILE sets the trusted certificates, "
+                                                      "--insecure disables the verification"));
+}
+
+void play_lines(const std::string& path, const std::vector<Line>& lines,
+                const client::WebSocketUrl& url, const PlaySettings& settings) {
   const auto transcript = open_transcript(path, settings);
   Player player(
-      [&](const ConnectRequest& request) {
-        return connect_websocket(url, settings.trust, request,
-                                 std::chrono::steady_clock::now() + settings.patience);
-      },
+      [&](const client::ConnectRequest& request) { return connect(request, url, settings); },
       settings.patience);
-  player.fetch_by([&](const std::string& target, Deadline deadline) {
+  player.fetch_by([&](const std::string& target, client::Deadline deadline) {
     return fetch_http(url, settings.trust, target, deadline);
   });
   if (transcript) player.record(*transcript);

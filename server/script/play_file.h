@@ -6,15 +6,15 @@
 #include <utility>
 #include <vector>
 
+#include "protocol/client/connection/websocket_url.h"
 #include "server/script/pattern.h"
-#include "server/script/websocket_url.h"
 
 namespace vat::script {
 
 struct PlaySettings {
   /// Server for the scripts. If absent, each script gets a new server.
-  std::optional<WebSocketUrl> server;
-  TlsTrust trust;                      ///< certificates for a server with TLS
+  std::optional<client::WebSocketUrl> server;
+  client::TlsTrust trust;              ///< certificates for a server with TLS
   std::string program;                 ///< program that starts a server
   std::vector<std::string> arguments;  ///< followed by the arguments in the script's first line
   std::string heading;                 ///< heading of the script in a Markdown document

@@ -105,8 +105,8 @@ void Player::run_action(const std::string& action, const Json& line) {
   if (action == "expect_frame") return expect_frame(line);
   if (action == "expect_none") return expect_none(line);
   if (action == "expect_close") return expect_close(line);
-  if (action == "close") return peer_of(line).client->close();
-  if (action == "read") return peer_of(line).client->read(line["read"].get<bool>());
+  if (action == "close") return peer_of(line).socket->close();
+  if (action == "read") return peer_of(line).socket->read(line["read"].get<bool>());
   send(line);
 }
 
@@ -119,10 +119,10 @@ void Player::repeat(const Json& line) {
 }
 
 void Player::connect(const Json& line) {
-  ConnectRequest request;
+  client::ConnectRequest request;
   request.path = line.value("path", request.path);
   request.subprotocol = line.value("subprotocol", request.subprotocol);
-  Connected connected = connect_(request);
+  client::Connected connected = connect_(request);
   const unsigned wanted = line.value("refused", 101U);
   if (connected.http_status != wanted) {
     throw Failure("expected HTTP status " + std::to_string(wanted) + ", came " +
@@ -130,7 +130,7 @@ void Player::connect(const Json& line) {
   }
   Peer& peer = peers_[name_of(line["connect"])] = Peer{};
   peer.connection = name_of(line["connect"]) + '#' + std::to_string(++connections_);
-  peer.client = std::move(connected.client);
+  peer.socket = std::move(connected.connection);
 }
 
 void Player::fetch(const Json& line) {
@@ -144,7 +144,7 @@ void Player::fetch(const Json& line) {
 
 void Player::send_text(Peer& peer, const std::string& text, const Json& line) {
   if (transcript_ != nullptr) transcript_->sent(peer.connection, text, line.value("wrong", false));
-  peer.client->send_text(text);
+  peer.socket->send_text(text);
 }
 
 void Player::send(const Json& line) {
@@ -154,7 +154,7 @@ void Player::send(const Json& line) {
   } else if (line.contains("send_text")) {
     send_text(peer, substitute(line["send_text"], captures_).get<std::string>(), line);
   } else {
-    peer.client->send_binary(
+    peer.socket->send_binary(
         from_hex(substitute(line["send_binary"], captures_).get<std::string>()));
   }
 }
@@ -183,7 +183,7 @@ void Player::call(const Json& line) {
 void Player::wait_ticks(const Json& line) {
   constexpr auto kInterval = std::chrono::milliseconds(10);
   Peer& peer = peer_of(line);
-  const Deadline deadline = deadline_of(line);
+  const client::Deadline deadline = deadline_of(line);
   std::optional<std::uint64_t> wanted;
   for (;;) {
     const Json reply = request(peer, "state.query", {{"bodies", Json::array()}}, line);
@@ -218,7 +218,7 @@ void Player::expect_reply(const Json& line) {
 void Player::wait_for(const Json& line, const char* action, Inbox inbox) {
   const Json& pattern = line[action];
   std::string last = "none came";
-  const Deadline deadline = deadline_of(line);
+  const client::Deadline deadline = deadline_of(line);
   for (;;) {
     const auto message = take(peer_of(line), inbox, deadline, [](const Json&) { return true; });
     if (!message) throw Failure("expected " + pattern.dump() + "; the last received: " + last);
@@ -238,7 +238,7 @@ void Player::expect_frame(const Json& line) {
 void Player::expect_none(const Json& line) {
   const std::map<std::string, Inbox> inboxes{
       {"reply", &Peer::replies}, {"event", &Peer::events}, {"frame", &Peer::frames}};
-  const Deadline deadline = std::chrono::steady_clock::now() + seconds(line.at("for"));
+  const client::Deadline deadline = std::chrono::steady_clock::now() + seconds(line.at("for"));
   const Json pattern = line.value("matching", Json("$any"));
   Peer& peer = peer_of(line);
   const Inbox inbox = inboxes.at(line["expect_none"].get<std::string>());
@@ -251,7 +251,7 @@ void Player::expect_none(const Json& line) {
 
 void Player::expect_close(const Json& line) {
   Peer& peer = peer_of(line);
-  const Deadline deadline = deadline_of(line);
+  const client::Deadline deadline = deadline_of(line);
   while (!peer.closed && receive(peer, deadline)) {
   }
   const std::string wanted =
@@ -278,23 +278,23 @@ Player::Peer& Player::peer_of(const Json& line) {
   return found->second;
 }
 
-Deadline Player::deadline_of(const Json& line) const {
+client::Deadline Player::deadline_of(const Json& line) const {
   const auto wait = line.contains("within") ? seconds(line["within"]) : patience_;
   return std::chrono::steady_clock::now() + wait;
 }
 
-bool Player::receive(Peer& peer, Deadline deadline) {
+bool Player::receive(Peer& peer, client::Deadline deadline) {
   if (peer.closed) return false;
-  std::optional<Message> message = peer.client->next(deadline);
+  std::optional<client::Message> message = peer.socket->next(deadline);
   if (!message) return false;
   switch (message->kind) {
-    case Message::Kind::text:
+    case client::Message::Kind::text:
       receive_text(peer, message->bytes);
       break;
-    case Message::Kind::binary:
+    case client::Message::Kind::binary:
       receive_frame(peer, message->bytes);
       break;
-    case Message::Kind::closed:
+    case client::Message::Kind::closed:
       if (transcript_ != nullptr) transcript_->closed(peer.connection, message->close_code);
       peer.closed = std::move(message);
       break;
@@ -334,7 +334,8 @@ void Player::receive_frame(Peer& peer, const std::string& bytes) {
 }
 
 template <class Wanted>
-std::optional<Json> Player::take(Peer& peer, Inbox inbox, Deadline deadline, Wanted&& wanted) {
+std::optional<Json> Player::take(Peer& peer, Inbox inbox, client::Deadline deadline,
+                                 Wanted&& wanted) {
   std::deque<Json>& messages = peer.*inbox;
   std::size_t seen = 0;
   do {

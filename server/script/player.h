@@ -3,13 +3,17 @@
 #include <deque>
 #include <vector>
 
+#include "protocol/client/connection/connection.h"
 #include "protocol/frame/frame_codec.h"
-#include "server/script/client.h"
 #include "server/script/frame_json.h"
 #include "server/script/script.h"
 #include "server/script/transcript.h"
 
 namespace vat::script {
+
+using Connect = std::function<client::Connected(const client::ConnectRequest&)>;
+/// Function that returns the response to GET for a path, see fetch_http().
+using Fetch = std::function<Json(const std::string& path, client::Deadline deadline)>;
 
 /// Exception: an expectation of a script line failed. The text contains the line, the expectation
 /// and the received message.
@@ -46,11 +50,11 @@ class Player {
   /// Client, and received messages that no line has used yet.
   struct Peer {
     std::string connection;  ///< name of the connection in the transcript
-    std::unique_ptr<Client> client;
+    std::unique_ptr<client::Connection> socket;
     std::deque<Json> replies;
     std::deque<Json> events;
     std::deque<Json> frames;
-    std::optional<Message> closed;
+    std::optional<client::Message> closed;
     FrameDecoder decoder;
     std::optional<std::uint64_t> epoch;  ///< epoch of the last description
     BodyNames names;                     ///< from the last description
@@ -74,9 +78,9 @@ class Player {
 
   std::string name_of(const Json& name) const;
   Peer& peer_of(const Json& line);
-  Deadline deadline_of(const Json& line) const;
+  client::Deadline deadline_of(const Json& line) const;
   /// Receives a message into the inboxes. Returns false if no message arrives before the deadline.
-  bool receive(Peer& peer, Deadline deadline);
+  bool receive(Peer& peer, client::Deadline deadline);
   void send_text(Peer& peer, const std::string& text, const Json& line);
   /// Sends a request and waits for its reply.
   Json request(Peer& peer, const Json& method, const Json& params, const Json& line);
@@ -86,7 +90,7 @@ class Player {
   void receive_frame(Peer& peer, const std::string& bytes);
   /// Removes and returns the first element of the inbox that satisfies `wanted`.
   template <class Wanted>
-  std::optional<Json> take(Peer& peer, Inbox inbox, Deadline deadline, Wanted&& wanted);
+  std::optional<Json> take(Peer& peer, Inbox inbox, client::Deadline deadline, Wanted&& wanted);
   void require(const Json& pattern, const Json& value);
 
   Connect connect_;

@@ -38,6 +38,21 @@ cmake -G Ninja -S "$sources/tests/cli/library" -B "$work/example" \
   cmake --build "$work/example" >>"$work/log" 2>&1 || fail "$(<"$work/log")"
 # Free fall: -9.81 / 2 * 0.5^2 m.
 expect "a program with the library" "after 0.5 s: -1.22625 m" "$("$work/example/fall")"
+# watch PROGRAM: runs the watcher with a server.
+watch() {
+  python3 -B "$sources/tests/clients/run_example.py" "$vat" "$sources/tests/cli/library/watcher.txt" \
+    "$1" ball >"$work/log" 2>&1 || fail "$(<"$work/log")"
+}
+watch "$work/example/watcher"
+pkg_config=$(find "$work/moved" -name vat-client.pc)
+libraries=$(PKG_CONFIG_PATH=${pkg_config%/*} pkg-config --libs vat-client)
+# shellcheck disable=SC2086 # several words
+c++ -o "$work/linked" "$work/example/CMakeFiles/watcher.dir/watcher.cpp.o" $libraries ||
+  fail "vat-client.pc lacks a library"
+watch "$work/linked"
+shown=$(sed -n '/^```cpp$/,/^```$/{/^```/d;p}' "$sources/protocol/client/README.md")
+[[ -n $shown && $(<"$sources/tests/cli/library/watcher.cpp") == *"$shown"* ]] ||
+  fail "protocol/client/README.md shows another program than watcher.cpp"
 
 # shellcheck source=/dev/null
 source "$work/moved/share/bash-completion/completions/vat"

@@ -8,8 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "protocol/client/connection/connection.h"
 #include "protocol/json/json_reader.h"
-#include "server/script/client.h"
 #include "tests/server/fixture/message_record.h"
 #include "tests/support/patience.h"
 
@@ -28,17 +28,18 @@ class WaitingClient {
  public:
   explicit WaitingClient(std::uint16_t port) {
     const std::string url = "ws://127.0.0.1:" + std::to_string(port) + "/ws";
-    client_ = connect_websocket(script::read_websocket_url(url), {}, {}, deadline()).client;
+    connection_ =
+        client::connect_websocket(client::read_websocket_url(url), {}, {}, deadline()).connection;
   }
-  bool is_connected() const { return client_ != nullptr; }
-  void close() { client_->close(); }
+  bool is_connected() const { return connection_ != nullptr; }
+  void close() { connection_->close(); }
 
   /// Returns the complete reply.
   Json call(const std::string& method, const Json& params = Json::object()) {
     const Json request{{"jsonrpc", "2.0"}, {"id", ++id_}, {"method", method}, {"params", params}};
     const std::string text = request.dump();
     if (auto* record = next_record()) record->sent(name_, text);
-    client_->send_text(text);
+    connection_->send_text(text);
     Json reply = wait(id_);
     if (reply.contains("closed")) throw Gone("closed");
     return reply;
@@ -56,10 +57,10 @@ class WaitingClient {
         return std::move(passed.mapped());
     }
     for (;;) {
-      const auto message = client_->next(deadline());
+      const auto message = connection_->next(deadline());
       if (!message) throw std::runtime_error("no " + id_or_event.dump());
-      if (message->kind == script::Message::Kind::closed) return {{"closed", message->close_code}};
-      if (message->kind != script::Message::Kind::text) continue;
+      if (message->kind == client::Message::Kind::closed) return {{"closed", message->close_code}};
+      if (message->kind != client::Message::Kind::text) continue;
       if (auto* record = next_record()) record->received(name_, message->bytes);
       Json json = Json::parse(message->bytes);
       if (json.value("method", "") == "session.diverged") throw std::runtime_error(json.dump());
@@ -72,7 +73,7 @@ class WaitingClient {
   }
 
  private:
-  static script::Deadline deadline() {
+  static client::Deadline deadline() {
     return std::chrono::steady_clock::now() + std::chrono::seconds(10 * kSlowdown);
   }
   /// Returns the transcript of the first messages only, because a load repeats the same messages.
@@ -86,7 +87,7 @@ class WaitingClient {
     return std::to_string(++last);
   }
   const std::string name_ = next_name();  ///< name in the transcript
-  std::unique_ptr<script::Client> client_;
+  std::unique_ptr<client::Connection> connection_;
   std::map<std::string, Json> passed_;  ///< the last event of each kind
   int id_ = 0;
 };

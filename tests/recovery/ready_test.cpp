@@ -19,7 +19,7 @@ using namespace std::chrono_literals;
 using std::chrono::steady_clock;
 
 Json fetch_readiness(std::uint16_t port) {
-  const auto url = script::read_websocket_url("ws://127.0.0.1:" + std::to_string(port) + "/ws");
+  const auto url = client::read_websocket_url("ws://127.0.0.1:" + std::to_string(port) + "/ws");
   return script::fetch_http(url, {}, "/readyz", steady_clock::now() + 30s);
 }
 

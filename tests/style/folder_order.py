@@ -25,6 +25,8 @@ FOLDER_ORDER = (
     "core/device/opencl", "core/device/tait", "core/device",
     "protocol/json", "protocol/files", "protocol/scene", "protocol/published", "protocol/frame", "protocol/messages",
     "protocol/recording", "protocol/python/native",
+    # the client library
+    "protocol/client/connection", "protocol/client/methods", "protocol/client/exchange", "protocol/client",
     # files, sockets and measurements, without sessions
     "server/support", "server/output", "server/storage/sqlite", "server/storage", "server/access", "server/transport",
     "server/operations", "server/messages", "server/http",

@@ -14,7 +14,9 @@ GENERATED = re.compile(r"// Written from .*; not to be edited\.\n")  # the first
 # folder or an extension. Headers of the standard library have neither.
 LAYERS = {
     "core/": (("core/",), ("CL/", "Eigen/", "cpuid.h", "dlfcn.h", "hwy/")),
-    "protocol/": (("core/", "protocol/"), ("nlohmann/", "pybind11/", "tiny_obj_loader.h")),
+    "protocol/": (
+        ("core/", "protocol/"), ("boost/", "nlohmann/", "openssl/", "pybind11/", "tiny_obj_loader.h"),
+    ),
     "server/": (
         ("core/", "protocol/", "server/"),
         ("CLI/", "Eigen/", "boost/", "fmt/", "nlohmann/", "spdlog/", "websocketpp/", "unistd.h", "sys/",
@@ -27,6 +29,8 @@ ONLY_IN = {
     "CL/": "core/device/opencl/", "dlfcn.h": "core/device/opencl/", "sqlite3.h": "server/storage/",
     "websocketpp/": "server/transport/", "zstd.h": "server/storage/",
     "lz4.h": "server/output/", "pybind11/": "protocol/python/native/",
+    "boost/": ("protocol/client/connection/", "server/"),
+    "openssl/": ("protocol/client/connection/", "server/"),
 }
 
 # Constructs that make the order of operations depend on threads, addresses or randomness.
@@ -64,7 +68,8 @@ def include_fault(path, layer, quote, header):
             return f"{layer} may not include <{header}>"
         for prefix, home in ONLY_IN.items():
             if header.startswith(prefix) and not path.startswith(home):
-                return f"only {home} may include <{header}>"
+                homes = [home] if isinstance(home, str) else home
+                return f"only {' and '.join(homes)} may include <{header}>"
     elif layer == "core/" and header in NOT_IN_CORE and not path.startswith("core/threads/"):
         return f"core/ has no clock, files, chance or threads: <{header}>"
     return None

@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "protocol/client/connection/connection.h"
 #include "protocol/json/json_reader.h"
-#include "server/script/client.h"
 #include "tests/bench/soak/tally.h"
 
 namespace vat::bench {
@@ -34,24 +34,26 @@ class Caller {
   void send(const std::string& method, const Json& params);
   /// Reads messages for `time`.
   void read_for(std::chrono::milliseconds time);
-  /// See script::Client::read().
-  void read(bool wanted) { client_->read(wanted); }
-  void close() { client_->close(); }
+  /// See client::Connection::read().
+  void read(bool wanted) { connection_->read(wanted); }
+  void close() { connection_->close(); }
   /// Returns the next message; no value if none arrives by the deadline.
-  std::optional<script::Message> next(script::Deadline deadline) { return client_->next(deadline); }
-  script::Client& client() { return *client_; }
+  std::optional<client::Message> next(client::Deadline deadline) {
+    return connection_->next(deadline);
+  }
+  client::Connection& connection() { return *connection_; }
 
  private:
   /// Acknowledges a frame, or returns a text message.
-  Json take(const script::Message& message);
+  Json take(const client::Message& message);
 
   Tally& tally_;
-  std::unique_ptr<script::Client> client_;
+  std::unique_ptr<client::Connection> connection_;
   std::int64_t id_ = 0;
 };
 
 /// Returns an open connection to the server.
-std::unique_ptr<script::Client> connect(std::uint16_t port);
+std::unique_ptr<client::Connection> connect(std::uint16_t port);
 /// Returns the reply to GET in the format of script::fetch_http(). Throws if there is none.
 Json fetch(std::uint16_t port, const std::string& path);
 

@@ -186,7 +186,7 @@ class Client {
   /// Reads all messages up to the end of the connection.
   void drain() {
     while (const auto message = caller_->next(steady_clock::now() + 5ms)) {
-      if (message->kind == script::Message::Kind::closed) return lose_connection();
+      if (message->kind == client::Message::Kind::closed) return lose_connection();
     }
   }
 

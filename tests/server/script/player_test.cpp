@@ -10,15 +10,19 @@
 namespace vat::script::player_test {
 namespace {
 
+using client::Connected;
+using client::Connection;
+using client::ConnectRequest;
+using client::Message;
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-/// A client whose replies the test defines. It replies immediately.
-class FakeClient final : public Client {
+/// A connection whose replies the test defines. It replies immediately.
+class FakeConnection final : public Connection {
  public:
   using Answer = std::function<std::vector<Message>(const std::string& sent)>;
-  explicit FakeClient(Answer answer) : answer_(std::move(answer)) {}
+  explicit FakeConnection(Answer answer) : answer_(std::move(answer)) {}
 
   void send_text(const std::string& text) override {
     for (Message& message : answer_(text)) waiting_.push_back(std::move(message));
@@ -26,7 +30,7 @@ class FakeClient final : public Client {
   void send_binary(const std::string& bytes) override { send_text(bytes); }
   void close() override { waiting_.push_back({Message::Kind::closed, "", 1000}); }
   void read(bool) override {}
-  std::optional<Message> next(Deadline) override {
+  std::optional<Message> next(client::Deadline) override {
     if (waiting_.empty()) return {};
     Message message = std::move(waiting_.front());
     waiting_.pop_front();
@@ -75,7 +79,7 @@ std::string outcome(const std::vector<const char*>& lines) {
   Player player(
       [](const ConnectRequest& request) -> Connected {
         if (request.subprotocol != "vat.v1") return {nullptr, 400};
-        return {std::make_unique<FakeClient>(answer), 101};
+        return {std::make_unique<FakeConnection>(answer), 101};
       },
       std::chrono::milliseconds(10));
   std::vector<Line> script{{"s:1", {{"connect", "a"}}}};

@@ -11,9 +11,9 @@
 #include <optional>
 #include <utility>
 
-#include "server/script/websocket_url.h"
+#include "protocol/client/connection/websocket_url.h"
 
-namespace vat::script {
+namespace vat::client {
 
 /// TCP connection, with TLS if the URL of the server requires TLS. HTTP and WebSocket of
 /// Boost.Beast use the connection. All handlers have one type, so that the templates of Boost.Beast
@@ -21,6 +21,7 @@ namespace vat::script {
 /// Operations.
 class SocketStream {
  public:
+  // NOLINTNEXTLINE(readability-identifier-naming): the name that Boost.Asio requires
   using executor_type = boost::asio::io_context::executor_type;
   using ErrorCode = boost::system::error_code;
   using Handler = std::function<void(ErrorCode, std::size_t)>;
@@ -33,7 +34,8 @@ class SocketStream {
   SocketStream& operator=(const SocketStream&) = delete;
 
   executor_type get_executor();
-  /// Connects and checks the server's certificate. Throws std::runtime_error with the cause.
+  /// Connects and checks the server's certificate. Throws UntrustedServer, or std::runtime_error
+  /// with the cause.
   void open(Deadline deadline);
   /// Closes the socket. Operations in progress end with an error.
   void close_socket();
@@ -119,4 +121,4 @@ class Operations {
   boost::asio::io_context context_;
 };
 
-}  // namespace vat::script
+}  // namespace vat::client

@@ -1,10 +1,10 @@
-#include "server/script/websocket_url.h"
+#include "protocol/client/connection/websocket_url.h"
 
 #include <gtest/gtest.h>
 
 #include <stdexcept>
 
-namespace vat::script::websocket_url_test {
+namespace vat::client::websocket_url_test {
 namespace {
 
 TEST(WebSocketUrl, HasADefaultPortAndPath) {
@@ -47,4 +47,4 @@ TEST(WebSocketUrl, RefusesInvalidUrls) {
 }
 
 }  // namespace
-}  // namespace vat::script::websocket_url_test
+}  // namespace vat::client::websocket_url_test

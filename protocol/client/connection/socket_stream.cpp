@@ -1,4 +1,4 @@
-#include "server/script/socket_stream.h"
+#include "protocol/client/connection/socket_stream.h"
 
 #include <openssl/ssl.h>
 #include <openssl/x509v3.h>
@@ -12,7 +12,7 @@
 #include <boost/asio/ssl/stream.hpp>
 #include <stdexcept>
 
-namespace vat::script {
+namespace vat::client {
 
 namespace asio = boost::asio;
 using asio::ip::tcp;
@@ -56,16 +56,16 @@ void expect_server(SSL* tls, const WebSocketUrl& url) {
   }
 }
 
-/// Returns the reason of a failed handshake, and a hint.
-std::string handshake_fault(SSL* tls, const WebSocketUrl& url, const ErrorCode& failure) {
+/// Throws the reason of a failed handshake.
+[[noreturn]] void throw_handshake_fault(SSL* tls, const WebSocketUrl& url,
+                                        const ErrorCode& failure) {
   const long found = SSL_get_verify_result(tls);
   if (found != X509_V_OK && SSL_get_verify_mode(tls) != SSL_VERIFY_NONE) {
-    return "the certificate of " + url.authority() +
-           " is not trusted: " + X509_verify_cert_error_string(found) +
-           "; --ca FILE sets the trusted certificates, --insecure disables the verification";
+    throw UntrustedServer("the certificate of " + url.authority() +
+                          " is not trusted: " + X509_verify_cert_error_string(found));
   }
-  return "no TLS with " + url.authority() + ": " + failure.message() +
-         "; a server without TLS is at ws://";
+  throw std::runtime_error("no TLS with " + url.authority() + ": " + failure.message() +
+                           "; a server without TLS is at ws://");
 }
 
 }  // namespace
@@ -132,7 +132,7 @@ void SocketStream::open(Deadline deadline) {
   if (!run(outcome)) {
     throw std::runtime_error("the server did not answer the handshake of TLS in time");
   }
-  if (*outcome) throw std::runtime_error(handshake_fault(tls, url_, *outcome));
+  if (*outcome) throw_handshake_fault(tls, url_, *outcome);
 }
 
 void SocketStream::close_socket() {
@@ -194,4 +194,4 @@ void Operations::run_out() {
   context_.run();
 }
 
-}  // namespace vat::script
+}  // namespace vat::client

@@ -2,15 +2,13 @@
 
 #include <chrono>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 
-#include "server/script/pattern.h"
-#include "server/script/websocket_url.h"
+#include "protocol/client/connection/websocket_url.h"
 
-namespace vat::script {
+namespace vat::client {
 
 using Deadline = std::chrono::steady_clock::time_point;
 
@@ -21,10 +19,10 @@ struct Message {
   std::uint16_t close_code = 0;  ///< 0: the connection failed without a close frame
 };
 
-/// WebSocket connection of a script.
-class Client {
+/// WebSocket connection to a server.
+class Connection {
  public:
-  virtual ~Client() = default;
+  virtual ~Connection() = default;
   virtual void send_text(const std::string& text) = 0;
   virtual void send_binary(const std::string& bytes) = 0;
   virtual void close() = 0;
@@ -42,16 +40,12 @@ struct ConnectRequest {
 
 /// Open connection, or HTTP status of the refusal.
 struct Connected {
-  std::unique_ptr<Client> client;
+  std::unique_ptr<Connection> connection;
   unsigned http_status = 101;
 };
-using Connect = std::function<Connected(const ConnectRequest&)>;
-/// Function that returns the response to GET for a path, see fetch_http().
-using Fetch = std::function<Json(const std::string& path, Deadline deadline)>;
 
-/// Connects to a server. Throws std::runtime_error if the connection fails or the server is not
-/// trusted.
+/// Connects to a server. Throws UntrustedServer, or std::runtime_error if the connection fails.
 Connected connect_websocket(const WebSocketUrl& url, const TlsTrust& trust,
                             const ConnectRequest& request, Deadline deadline);
 
-}  // namespace vat::script
+}  // namespace vat::client

@@ -1,11 +1,11 @@
-#include "server/script/websocket_url.h"
+#include "protocol/client/connection/websocket_url.h"
 
 #include <algorithm>
 #include <cctype>
 #include <stdexcept>
 #include <string_view>
 
-namespace vat::script {
+namespace vat::client {
 namespace {
 
 constexpr std::string_view kPlain = "ws://";
@@ -55,4 +55,4 @@ WebSocketUrl read_websocket_url(const std::string& text) {
   return url;
 }
 
-}  // namespace vat::script
+}  // namespace vat::client
