@@ -82,7 +82,13 @@ def validator(name, definition, closed=False):
 
 def fault(value, name, definition, closed=False):
     """Returns the reason why the value does not match the definition, or None."""
-    error = best_match(validator(name, definition, closed).iter_errors(value))
+    return text_fault(json.dumps(value), name, definition, closed)
+
+
+# Many messages of the tests are equal.
+@functools.cache
+def text_fault(text, name, definition, closed):
+    error = best_match(validator(name, definition, closed).iter_errors(json.loads(text)))
     if error is None:
         return None
     place = "".join(f"/{part}" for part in error.absolute_path) or "the top"
