@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <future>
 #include <mutex>
 
@@ -150,8 +151,8 @@ TEST_F(CppClient, ReceivesEventsAboutNotifications) {
 }
 
 TEST_F(CppClient, ResumesItsParticipantAfterARestartOfTheServer) {
-  const std::vector<std::string> data = {"--data", folder_.file("data")};
-  start({"--port", "0", data[0], data[1]});
+  const std::string data = folder_.file("data");
+  start({"--port", "0", "--data", data, "--drain-seconds", "0"});
   const std::string port = std::to_string(server_->port());
   Expected<SessionJoin::Result> rejoined;
   Expected<std::uint64_t> tick;
@@ -168,8 +169,8 @@ TEST_F(CppClient, ResumesItsParticipantAfterARestartOfTheServer) {
   Client client(url("ws"), {.first_retry = 20ms, .longest_retry = 100ms}, handlers);
   const SessionJoin::Result joined = client.call<SessionJoin>({.name = "watcher"}).get();
   client.call<FramesSubscribe>({.max_error = 0.01}).get();
-  server_->kill();
-  start({"--port", port, data[0], data[1]});
+  EXPECT_EQ(server_->stop(), 0);  // stores the participants
+  start({"--port", port, "--data", data});
   const SessionJoin::Result result = rejoined.wait();
   EXPECT_TRUE(result.resumed);
   EXPECT_EQ(result.participant, joined.participant);

@@ -118,9 +118,9 @@ class Client {
     for (int i = 0; i < 20; ++i) {
       ++tally_.garbage;
       if (below(5) == 0) {
-        caller_->client().send_binary(rubbish_.bytes());
+        caller_->connection().send_binary(rubbish_.bytes());
       } else {
-        caller_->client().send_text(rubbish_.text());
+        caller_->connection().send_text(rubbish_.text());
       }
     }
     drain();
