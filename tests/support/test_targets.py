@@ -17,10 +17,10 @@ def main():
         return
     listed = subprocess.run(
         ["ninja", "-C", folder, "-t", "targets", "all"], check=True, capture_output=True, text=True)
-    programs = {line.split(": ")[0] for line in listed.stdout.splitlines()
-                if "CXX_EXECUTABLE_LINKER" in line}
+    linked = {line.split(": ")[0] for line in listed.stdout.splitlines()
+              if re.search("CXX_(EXECUTABLE|STATIC_LIBRARY)_LINKER", line)}
     paths = re.findall(re.escape(folder) + r"/([\w./-]+)", json.dumps(tests))
-    chosen = programs.intersection(paths)
+    chosen = linked.intersection(paths)
     if any(path.split("/")[0] == "python" for path in paths):
         chosen.add("vat_python")
     # Without targets, ninja builds all.

@@ -103,6 +103,40 @@ TEST(ClientFrames, WithoutADescriptionHaveNoNames) {
   EXPECT_TRUE(reception.frame->bodies[1].positions.empty());
 }
 
+GridFrame make_grid(std::uint32_t number) {
+  PublishedState state = make_state();
+  state.header.number = number;
+  state.bodies[0].positions[0].x() += 0.01 * number;
+  FrameScale scale;
+  scale.grid = make_frame_grid({0, 0, 0}, {1, 1, 1}, kMaxError);
+  GridFrame frame;
+  make_grid_frame(state, scale, frame);
+  return frame;
+}
+
+TEST(ClientFrames, AfterALostReferenceAskForOneKeyFrame) {
+  const GridFrame first = make_grid(1);
+  const GridFrame second = make_grid(2);
+  const GridFrame third = make_grid(3);
+  const GridFrame fourth = make_grid(4);
+  FrameEncoder encoder;
+  FrameReceiver receiver;
+  EXPECT_NE(receiver.receive(encode_key_frame(first)).frame, nullptr);
+  // The second frame is lost.
+  FrameReceiver::Reception lost = receiver.receive(encoder.encode(third, {.first = &second}));
+  EXPECT_EQ(lost.frame, nullptr);
+  EXPECT_EQ(lost.number, 3U);
+  EXPECT_TRUE(lost.asks_for_key);
+  EXPECT_FALSE(lost.is_broken);
+  lost = receiver.receive(encoder.encode(fourth, {.first = &third}));
+  EXPECT_EQ(lost.frame, nullptr);
+  EXPECT_EQ(lost.number, 4U);
+  EXPECT_FALSE(lost.asks_for_key);
+  EXPECT_FALSE(lost.is_broken);
+  EXPECT_EQ(lost.fault, "");
+  EXPECT_NE(receiver.receive(encode_key_frame(make_grid(5))).frame, nullptr);
+}
+
 TEST(ClientFrames, ATruncatedHeaderBreaksTheConnection) {
   FrameReceiver receiver;
   const FrameReceiver::Reception reception = receiver.receive(std::vector<std::uint8_t>(11));
