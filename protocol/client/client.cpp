@@ -1,5 +1,6 @@
 #include "protocol/client/client.h"
 
+#include <atomic>
 #include <condition_variable>
 #include <mutex>
 #include <optional>
@@ -77,7 +78,7 @@ class Client::Impl {
     changed_.notify_all();
     if (socket_) socket_->cancel();
   }
-  bool runs_here() const { return std::this_thread::get_id() == thread_.get_id(); }
+  bool runs_here() const { return std::this_thread::get_id() == runner_; }
   void wait_until_ended() {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return has_ended_; });
@@ -125,10 +126,12 @@ class Client::Impl {
   bool is_decided_ = false;
   bool has_ended_ = false;
   std::optional<std::string> failure_;
+  std::atomic<std::thread::id> runner_{};  ///< id of `thread_`, which the constructor assigns later
   std::thread thread_;
 };
 
 void Client::Impl::run() {
+  runner_ = std::this_thread::get_id();
   exchange_.start_connecting();
   while (!is_stopping() && exchange_.state() != ConnectionState::closed) {
     if (exchange_.state() == ConnectionState::waiting) {

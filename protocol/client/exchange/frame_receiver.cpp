@@ -5,6 +5,13 @@
 namespace vat::client {
 namespace {
 
+constexpr bool is_same(BodyKind kind, GridBlock::Kind block) {
+  return static_cast<int>(kind) == static_cast<int>(block);
+}
+static_assert(is_same(BodyKind::liquid, GridBlock::Kind::liquid) &&
+              is_same(BodyKind::deformable, GridBlock::Kind::deformable) &&
+              is_same(BodyKind::rigid, GridBlock::Kind::rigid));
+
 void put_positions(const GridFrame& grid, const GridBlock& block, std::vector<Vec3>& positions) {
   const auto& [origin, quantum] = grid.scale.grid;
   positions.resize(block.particle_count());
