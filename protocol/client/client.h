@@ -19,12 +19,37 @@ struct ConnectError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Outcome of a call that was started. The calling thread throws the error, not the thread of the
+/// client as with std::future.
+template <class Value>
+class Pending {
+ public:
+  explicit Pending(std::future<Outcome<Value>> future) : future_(std::move(future)) {}
+
+  /// Waits for the outcome and returns the result. Throws the CallError of a failed call. Only one
+  /// call of get() or outcome() is possible.
+  Value get() {
+    Outcome<Value> outcome = future_.get();
+    return std::move(outcome.value());
+  }
+  /// As get(), but returns the error.
+  Outcome<Value> outcome() { return future_.get(); }
+  /// Waits at most `time`. Returns whether get() would return at once.
+  template <class Duration>
+  bool wait_for(Duration time) const {
+    return future_.wait_for(time) == std::future_status::ready;
+  }
+
+ private:
+  std::future<Outcome<Value>> future_;
+};
+
 /// Client of a server with the protocol vat.v1. If the connection is lost, the client connects
 /// again, continues as the same participant, and restores its subscription.
 ///
 /// Threads: a thread of the client receives messages and calls all handlers, one at a time. Events
 /// and frames are not stored: while a handler runs, further messages wait in the socket. A handler
-/// must not throw, wait for the future of a call, or destroy the client. All threads, also in
+/// must not throw, wait for a Pending, or destroy the client. All threads, also in
 /// handlers, may call the member functions.
 class Client {
  public:
@@ -37,11 +62,10 @@ class Client {
   Client(const Client&) = delete;
   Client& operator=(const Client&) = delete;
 
-  /// Calls a method, for example SessionJoin. The future has the result, or throws a CallError.
-  /// Throws std::invalid_argument if the params contain an enumerator `unknown` or text that is not
-  /// UTF-8.
+  /// Calls a method, for example SessionJoin. Throws std::invalid_argument if the params contain an
+  /// enumerator `unknown` or text that is not UTF-8.
   template <class Method>
-  std::future<typename Method::Result> call(const typename Method::Params& params = {});
+  Pending<typename Method::Result> call(const typename Method::Params& params = {});
   /// Calls a method. `handler` receives the outcome on the thread of the client. If the call cannot
   /// be sent, this thread calls `handler` before the function returns.
   template <class Method>
@@ -86,16 +110,12 @@ void Client::call(const typename Method::Params& params,
 }
 
 template <class Method>
-std::future<typename Method::Result> Client::call(const typename Method::Params& params) {
-  const auto promise = std::make_shared<std::promise<typename Method::Result>>();
-  call<Method>(params, [promise](Outcome<typename Method::Result> outcome) {
-    if (outcome) {
-      promise->set_value(std::move(outcome.value()));
-    } else {
-      promise->set_exception(std::make_exception_ptr(outcome.error()));
-    }
-  });
-  return promise->get_future();
+Pending<typename Method::Result> Client::call(const typename Method::Params& params) {
+  using Result = typename Method::Result;
+  const auto promise = std::make_shared<std::promise<Outcome<Result>>>();
+  call<Method>(params,
+               [promise](Outcome<Result> outcome) { promise->set_value(std::move(outcome)); });
+  return Pending<Result>(promise->get_future());
 }
 
 template <class Method>

@@ -123,9 +123,12 @@ TEST_F(CppClient, ReportsTheErrorsOfTheServer) {
     EXPECT_EQ(error.path(), "/speed");
     EXPECT_NE(error.hint(), "");
   }
+  const Outcome<InEffect> outcome = client.call<WorldRemoveBody>({.body = 98}).outcome();
+  ASSERT_FALSE(outcome.ok());
+  EXPECT_EQ(outcome.error().kind(), "no_such_body");
   Expected<std::string> kind;
-  client.call<WorldRemoveBody>({.body = 99}, [&](Outcome<InEffect> outcome) {
-    kind.set(outcome ? "" : outcome.error().kind());
+  client.call<WorldRemoveBody>({.body = 99}, [&](const Outcome<InEffect>& removed) {
+    kind.set(removed ? "" : removed.error().kind());
   });
   EXPECT_EQ(kind.wait(), "no_such_body");
 }
