@@ -23,8 +23,8 @@ FOLDER_ORDER = (
     "core/stepping", "core/sleep", "core/saved", "core/simulation",
     # steps on other devices
     "core/device/opencl", "core/device/tait", "core/device",
-    "protocol/json", "protocol/files", "protocol/scene", "protocol/published", "protocol/frame", "protocol/messages",
-    "protocol/recording", "protocol/python/native",
+    "protocol/json", "protocol/files", "protocol/scene", "protocol/convert", "protocol/published", "protocol/frame",
+    "protocol/messages", "protocol/recording", "protocol/python/native",
     # files, sockets and measurements, without sessions
     "server/support", "server/output", "server/storage/sqlite", "server/storage", "server/access", "server/transport",
     "server/operations", "server/messages", "server/http",
