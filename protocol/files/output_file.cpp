@@ -53,8 +53,8 @@ Status OutputFile::append(std::string_view bytes) {
   return {};
 }
 
-Status OutputFile::overwrite_start(std::string_view bytes) {
-  if (std::fseek(file_.get(), 0, SEEK_SET) != 0) return system_error("cannot be written");
+Status OutputFile::write_at(std::size_t offset, std::string_view bytes) {
+  if (std::fseek(file_.get(), static_cast<long>(offset), SEEK_SET) != 0) return system_error("cannot be written");
   if (Status written = append(bytes); !written) return written;
   if (std::fseek(file_.get(), 0, SEEK_END) != 0) return system_error("cannot be written");
   return {};

@@ -19,8 +19,9 @@ class OutputFile {
 
   /// Appends bytes.
   Status append(std::string_view bytes);
-  /// Replaces the first bytes. The file must be at least as long as `bytes`.
-  Status overwrite_start(std::string_view bytes);
+  /// Replaces the bytes from the offset on. Bytes between the end of the file and the offset become
+  /// zero.
+  Status write_at(std::size_t offset, std::string_view bytes);
   /// Closes the file and renames it to NAME. No writes are allowed afterwards.
   Status commit();
 

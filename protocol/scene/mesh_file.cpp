@@ -45,11 +45,14 @@ std::string ending_of(const std::string& file) {
   return ending;
 }
 
-RawMesh read_raw(const std::string& bytes, const std::string& ending) {
+RawMesh read_raw(const std::string& bytes, const std::string& file, const MeshFiles& files) {
+  const std::string ending = ending_of(file);
+  const std::string folder = file.substr(0, file.rfind('/') + 1);
   if (ending == ".stl") return mesh_parts::read_stl(bytes);
   if (ending == ".ply") return mesh_parts::read_ply(bytes);
-  if (ending == ".glb") return mesh_parts::read_glb(bytes);
-  throw Fault{"must end in .obj, .stl, .ply or .glb"};
+  if (ending == ".glb") return mesh_parts::read_glb(bytes, folder, files);
+  if (ending == ".gltf") return mesh_parts::read_gltf(bytes, folder, files);
+  throw Fault{"must end in .obj, .stl, .ply, .glb or .gltf"};
 }
 
 bool is_before(const Vec3& a, const Vec3& b) {
@@ -109,15 +112,15 @@ MeshShape to_mesh(const RawMesh& raw, const std::string& file, Real scale) {
 
 }  // namespace
 
-Result<MeshShape> read_mesh(const std::string& bytes, const std::string& file, Real scale) {
+Result<MeshShape> read_mesh(const std::string& bytes, const std::string& file, Real scale,
+                            const MeshFiles& files) {
   if (bytes.size() > kMaxMeshBytes) {
     return Error{"too_large", "",
                  file + ": at most " + std::to_string(kMaxMeshBytes) + " bytes are allowed"};
   }
-  const std::string ending = ending_of(file);
-  if (ending == ".obj") return read_obj(bytes, file, scale);
+  if (ending_of(file) == ".obj") return read_obj(bytes, file, scale);
   try {
-    return to_mesh(read_raw(bytes, ending), file, scale);
+    return to_mesh(read_raw(bytes, file, files), file, scale);
   } catch (const Fault& fault) {
     return mesh_error(file, fault.text);
   }

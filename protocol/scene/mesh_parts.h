@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/types.h"
+#include "protocol/scene/mesh_file.h"
 
 /// Parts of the readers of mesh formats. A reader returns the vertices and triangles of a file.
 namespace vat::mesh_parts {
@@ -52,7 +53,9 @@ std::optional<double> to_number(std::string_view word);
 RawMesh read_stl(std::string_view bytes);
 /// Returns the mesh of a .ply file. Throws Fault.
 RawMesh read_ply(std::string_view bytes);
-/// Returns the mesh of a .glb file, in which z points up. Throws Fault.
-RawMesh read_glb(std::string_view bytes);
+/// Return the mesh of a .glb or .gltf file, in which z points up. `files` returns the buffers whose
+/// URIs are relative to `folder`, which is empty or ends in '/'. Throw Fault.
+RawMesh read_glb(std::string_view bytes, const std::string& folder, const MeshFiles& files);
+RawMesh read_gltf(std::string_view text, const std::string& folder, const MeshFiles& files);
 
 }  // namespace vat::mesh_parts

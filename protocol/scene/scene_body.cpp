@@ -98,7 +98,7 @@ MeshShape read_mesh_file(ObjectReader& reader, const MeshSource& meshes, Errors&
     report(bytes.errors());
     return mesh;
   }
-  Result<MeshShape> read = read_mesh(bytes.value(), file, scale);
+  Result<MeshShape> read = read_mesh(bytes.value(), file, scale, meshes);
   if (!read) {
     report(read.errors());
     return mesh;

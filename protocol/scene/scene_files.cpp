@@ -58,6 +58,12 @@ MeshSource meshes_in_folder(std::string folder) {
   };
 }
 
+MeshSource meshes_relative_to(std::string folder) {
+  return [folder = std::move(folder)](const std::string& name) {
+    return read_file(fs::path(folder) / name, name, kMaxMeshBytes);
+  };
+}
+
 Result<Scene> read_scene_file(const std::string& path) {
   const Result<std::string> text = read_file(path, path, kSceneLimits.bytes);
   if (!text) return text.errors();

@@ -18,6 +18,9 @@ using MeshSource = std::function<Result<std::string>(const std::string& name)>;
 /// Returns a source that reads files below `folder`. The source rejects absolute names and names
 /// with "..".
 MeshSource meshes_in_folder(std::string folder);
+/// Returns a source that reads any file, relative to `folder`. For files that the program's user
+/// names.
+MeshSource meshes_relative_to(std::string folder);
 
 /// Limits of the JSON text of a scene.
 inline constexpr JsonLimits kSceneLimits{4 * 1024 * 1024, 16, 1'000'000};

@@ -40,6 +40,7 @@ int run_command(int argc, char** argv) {
   add_serve_command(app, exit_code);
   add_simulate_command(app, exit_code);
   add_validate_command(app, exit_code);
+  add_convert_command(app, exit_code);
   add_devices_command(app, exit_code);
   add_script_command(app, exit_code);
   add_replay_command(app, exit_code);

@@ -19,6 +19,27 @@ Result<std::unique_ptr<FrameWriter>> create_csv_writer(const std::string& name);
 /// fails.
 Result<std::unique_ptr<FrameWriter>> create_npy_writer(const std::string& name);
 
+/// Returns a writer of a ZIP archive of arrays for numpy.load(). T is the number of output times, P
+/// the greatest number of particles that the scene can have:
+///
+/// - `time` [T] float64 [s], `count` [T] int64: number of particles;
+/// - `body` [T, P] int32: index of the body in the scene; `number` [T, P] int32: number of the
+///   particle in its body, which does not change while other particles appear or disappear;
+/// - `position` [T, P, 3] [m] and `velocity` [T, P, 3] [m/s], float64.
+///
+/// Elements from `count` on are -1 or NaN. In the file of a failed run, the times after the last
+/// output have the count 0. Creates the file, and returns an error if the creation fails.
+Result<std::unique_ptr<FrameWriter>> create_npz_writer(const std::string& name,
+                                                       std::size_t frame_count);
+
+/// Returns a writer of one binary glTF file, in single precision. Rigid bodies are meshes whose
+/// translation and rotation are animated. The particles of liquids and deformable bodies are points
+/// with one mesh for each of at most 120 key frames, and at most 20 million points in all. Colours
+/// are those of the materials. The writer keeps the content in memory until finish(). Creates the
+/// file, and returns an error if the creation fails.
+Result<std::unique_ptr<FrameWriter>> create_glb_writer(const std::string& name,
+                                                       std::size_t frame_count);
+
 /// Returns a writer of a series of binary point files for viewers. Properties in single precision:
 /// position [m], velocity [m/s], radius [m], colour by kind of body, index of the body in the
 /// scene.

@@ -22,7 +22,7 @@ class FrameWriter {
 };
 
 /// File name extensions that create_frame_writer() supports, for error messages.
-inline constexpr const char* kFrameEndings = ".csv, .pvd, .ply or .npy";
+inline constexpr const char* kFrameEndings = ".csv, .pvd, .ply, .npy, .npz or .glb";
 
 /// Returns whether the name has one of the extensions in kFrameEndings.
 bool is_frame_file_name(const std::string& name);
@@ -32,6 +32,8 @@ bool is_frame_file_name(const std::string& name);
 /// - `.pvd`: a list of VTK files, one `.vtu` file per time (see series_name()).
 /// - `.ply`: binary points coloured by kind of body, one file per time.
 /// - `.npy`: one array [times, particles, 6] of float64: x, y, z, vx, vy, vz.
+/// - `.npz`: arrays by name; the number of particles may change.
+/// - `.glb`: glTF with animation, for viewers of pictures.
 ///
 /// `frame_count` is the number of output times.
 Result<std::unique_ptr<FrameWriter>> create_frame_writer(const std::string& name,

@@ -1,27 +1,17 @@
 #include "server/output/frame_formats.h"
 
-#include <cstdint>
 #include <utility>
 
 #include "protocol/files/output_file.h"
+#include "server/output/array_header.h"
 #include "server/output/bytes.h"
 
 namespace vat {
 
 namespace {
 
-constexpr std::size_t kHeaderSize =
-    128;  // a multiple of 64, as the format asks; room for any shape
-
-// Header of NumPy's format 1.0: magic, version, length of the rest, and the array's type and shape
-// as a Python literal, padded with spaces to a line of fixed length.
 std::string npy_header(std::size_t frame_count, std::size_t particle_count) {
-  std::string header("\x93NUMPY\x01\x00", 8);
-  append_bytes(header, static_cast<std::uint16_t>(kHeaderSize - header.size() - 2));
-  header += "{'descr': '<f8', 'fortran_order': False, 'shape': (" + std::to_string(frame_count) +
-            ", " + std::to_string(particle_count) + ", 6), }";
-  header.resize(kHeaderSize - 1, ' ');
-  return header + '\n';
+  return array_header("<f8", {frame_count, particle_count, 6});
 }
 
 class NpyWriter final : public FrameWriter {
@@ -37,7 +27,7 @@ class NpyWriter final : public FrameWriter {
     bytes_.clear();
     for (const BodyView& body : simulation.bodies()) append_body(body);
     if (Status written = file_.append(bytes_); !written) return written;
-    return file_.overwrite_start(npy_header(++frame_count_, particle_count_));
+    return file_.write_at(0, npy_header(++frame_count_, particle_count_));
   }
 
   Status finish() override { return file_.commit(); }

@@ -52,12 +52,15 @@ class PlyWriter final : public SeriesWriter {
   using SeriesWriter::SeriesWriter;
 
  protected:
-  std::string content(const Simulation& simulation) const override {
-    std::string bytes = ply_header(simulation);
+  Status write_content(const Simulation& simulation, OutputFile& file) override {
+    bytes_ = ply_header(simulation);
     std::uint32_t number = 0;
-    for (const BodyView& body : simulation.bodies()) append_body(bytes, body, number++);
-    return bytes;
+    for (const BodyView& body : simulation.bodies()) append_body(bytes_, body, number++);
+    return file.append(bytes_);
   }
+
+ private:
+  std::string bytes_;
 };
 
 }  // namespace

@@ -18,14 +18,14 @@ class SeriesWriter : public FrameWriter {
   Status write(const Simulation& simulation) final {
     Result<OutputFile> file = OutputFile::create(series_name(name_, next_frame_++, frame_count_));
     if (!file) return file.errors();
-    if (Status written = file.value().append(content(simulation)); !written) return written;
+    if (Status written = write_content(simulation, file.value()); !written) return written;
     return file.value().commit();
   }
   Status finish() final { return {}; }
 
  protected:
-  /// Returns the whole content of the file for the current state.
-  virtual std::string content(const Simulation& simulation) const = 0;
+  /// Writes the whole content of the file for the current state.
+  virtual Status write_content(const Simulation& simulation, OutputFile& file) = 0;
 
  private:
   std::string name_;

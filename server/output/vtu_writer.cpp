@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <numeric>
 #include <span>
 #include <string>
 #include <utility>
@@ -22,131 +21,169 @@ namespace {
 /// Bytes that are compressed together. VTK decompresses blocks separately.
 constexpr std::size_t kBlockBytes = 256 * 1024;
 
-/// The arrays of a file: their descriptions in XML, and their compressed bytes.
+/// The arrays of a file: their descriptions in XML, and their compressed bytes. An array passes
+/// through a buffer of one block, which stays in the cache of the processor.
 class VtuArrays {
  public:
-  template <class Number>
-  void add(const std::string& name, const char* type, int components,
-           const std::vector<Number>& values) {
+  void clear() {
+    xml_.clear();
+    bytes_.clear();
+  }
+
+  /// Adds an array. `add_values` calls append() or repeat() for `count` numbers.
+  template <class Number, class Add>
+  void add(const char* name, const char* type, int components, std::size_t count,
+           Add&& add_values) {
     xml_ += "<DataArray type=\"" + std::string(type) + "\" Name=\"" + name +
             "\" NumberOfComponents=\"" + std::to_string(components) +
             "\" format=\"appended\" offset=\"" + std::to_string(bytes_.size()) + "\"/>\n";
-    add_blocks({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(Number)});
+    begin_array(count * sizeof(Number));
+    add_values();
+    end_array();
   }
   void open(const char* element) { xml_ += '<' + std::string(element) + ">\n"; }
   void close(const char* element) { xml_ += "</" + std::string(element) + ">\n"; }
+
+  /// Appends numbers or vectors to the current array.
+  template <class Value>
+  void append(std::span<const Value> values) {
+    const auto* bytes = reinterpret_cast<const char*>(values.data());
+    for (std::size_t left = values.size_bytes(); left > 0;) {
+      const std::size_t part = std::min(left, kBlockBytes - block_size_);
+      std::memcpy(block_.data() + block_size_, bytes, part);
+      block_size_ += part;
+      bytes += part;
+      left -= part;
+      if (block_size_ == kBlockBytes) end_block();
+    }
+  }
+  template <class Number>
+  void append_one(Number value) {
+    append(std::span<const Number>(&value, 1));
+  }
+  template <class Number>
+  void repeat(Number value, std::size_t count) {
+    for (std::size_t i = 0; i < count; ++i) append_one(value);
+  }
 
   const std::string& xml() const { return xml_; }
   const std::string& bytes() const { return bytes_; }
 
  private:
-  /// Appends the number of blocks, their size, the size of an incomplete last block, the compressed
-  /// sizes, and the compressed blocks.
-  void add_blocks(std::span<const char> data) {
-    const std::size_t count = (data.size() + kBlockBytes - 1) / kBlockBytes;
+  /// Appends the number of blocks, their size, the size of an incomplete last block, and room for
+  /// the compressed sizes. The compressed blocks follow.
+  void begin_array(std::size_t size) {
+    const std::size_t count = (size + kBlockBytes - 1) / kBlockBytes;
     append_bytes(bytes_, std::uint64_t{count});
     append_bytes(bytes_, std::uint64_t{kBlockBytes});
-    append_bytes(bytes_, std::uint64_t{data.size() % kBlockBytes});
-    std::size_t size_at = bytes_.size();
-    bytes_.resize(size_at + count * sizeof(std::uint64_t));
-    for (; !data.empty(); size_at += sizeof(std::uint64_t)) {
-      const std::span block = data.first(std::min(kBlockBytes, data.size()));
-      const std::uint64_t size = add_block(block);
-      std::memcpy(bytes_.data() + size_at, &size, sizeof size);
-      data = data.subspan(block.size());
-    }
+    append_bytes(bytes_, std::uint64_t{size % kBlockBytes});
+    size_at_ = bytes_.size();
+    last_size_at_ = size_at_ + count * sizeof(std::uint64_t);
+    bytes_.resize(last_size_at_);
   }
 
-  std::uint64_t add_block(std::span<const char> block) {
+  void end_array() {
+    if (block_size_ > 0) end_block();
+    VAT_CHECK(size_at_ == last_size_at_);
+  }
+
+  void end_block() {
     const std::size_t begin = bytes_.size();
-    const int size = static_cast<int>(block.size());
+    const int size = static_cast<int>(block_size_);
     bytes_.resize(begin + static_cast<std::size_t>(LZ4_compressBound(size)));
-    const int compressed = LZ4_compress_default(block.data(), bytes_.data() + begin, size,
+    const int compressed = LZ4_compress_default(block_.data(), bytes_.data() + begin, size,
                                                 static_cast<int>(bytes_.size() - begin));
     VAT_CHECK(compressed > 0);
     bytes_.resize(begin + static_cast<std::size_t>(compressed));
-    return static_cast<std::uint64_t>(compressed);
+    const std::uint64_t compressed_size = static_cast<std::uint64_t>(compressed);
+    std::memcpy(bytes_.data() + size_at_, &compressed_size, sizeof compressed_size);
+    size_at_ += sizeof compressed_size;
+    block_size_ = 0;
   }
 
   std::string xml_;
   std::string bytes_;
+  std::vector<char> block_ = std::vector<char>(kBlockBytes);
+  std::size_t block_size_ = 0;
+  std::size_t size_at_ = 0;       ///< of the size of the current block in `bytes_`
+  std::size_t last_size_at_ = 0;  ///< end of the sizes of the current array
 };
 
-/// Returns the values of all particles, body after body.
-template <class Number, class Values>
-std::vector<Number> of_particles(const Simulation& simulation, std::size_t components,
-                                 const Values& values) {
-  std::vector<Number> all;
-  all.reserve(components * simulation.particle_count());
-  for (const BodyView& body : simulation.bodies()) values(body, all);
-  return all;
+/// Adds vectors of all particles, body after body.
+void add_vectors(VtuArrays& arrays, const char* name, const std::vector<BodyView>& bodies,
+                 std::size_t count, std::span<const Vec3> BodyView::*vectors) {
+  static_assert(sizeof(Vec3) == 3 * sizeof(Real));
+  arrays.add<Real>(name, "Float64", 3, 3 * count, [&] {
+    for (const BodyView& body : bodies) arrays.append(body.*vectors);
+  });
 }
 
-void append_vectors(std::vector<Real>& all, std::span<const Vec3> vectors) {
-  for (const Vec3& vector : vectors) all.insert(all.end(), vector.data(), vector.data() + 3);
+/// Adds density or pressure. Bodies that are not liquid have no fields. Readers need a value for
+/// each particle.
+void add_field(VtuArrays& arrays, const char* name, const std::vector<BodyView>& bodies,
+               const std::vector<LiquidFields>& fields, std::size_t count,
+               std::vector<Real> LiquidFields::*field) {
+  arrays.add<Real>(name, "Float64", 1, count, [&] {
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
+      const std::vector<Real>& values = fields[i].*field;
+      if (values.empty()) {
+        arrays.repeat(Real{0}, bodies[i].positions.size());
+      } else {
+        arrays.append(std::span(values));
+      }
+    }
+  });
 }
 
-/// Bodies that are not liquid have no fields. Readers need a value for each particle.
-void append_field(std::vector<Real>& all, std::size_t count, const std::vector<Real>& field) {
-  if (field.empty()) return all.resize(all.size() + count);
-  all.insert(all.end(), field.begin(), field.end());
-}
-
-void add_attributes(VtuArrays& arrays, const Simulation& simulation) {
-  std::vector<std::uint32_t> bodies;
-  std::vector<std::uint8_t> kinds;
-  std::vector<Real> densities;
-  std::vector<Real> pressures;
-  std::uint32_t number = 0;
-  for (const BodyView& body : simulation.bodies()) {
-    const std::size_t count = body.positions.size();
-    bodies.insert(bodies.end(), count, number++);
-    kinds.insert(kinds.end(), count, static_cast<std::uint8_t>(body.kind));
-    const LiquidFields fields = liquid_fields_of(simulation, body);
-    append_field(densities, count, fields.density);
-    append_field(pressures, count, fields.pressure);
-  }
-  arrays.add("body", "UInt32", 1, bodies);
-  arrays.add("kind", "UInt8", 1, kinds);
-  arrays.add("density", "Float64", 1, densities);
-  arrays.add("pressure", "Float64", 1, pressures);
-  arrays.add("radius", "Float64", 1,
-             of_particles<Real>(simulation, 1, [](const BodyView& body, std::vector<Real>& all) {
-               all.insert(all.end(), body.radii.begin(), body.radii.end());
-             }));
-  arrays.add("velocity", "Float64", 3,
-             of_particles<Real>(simulation, 3, [](const BodyView& body, std::vector<Real>& all) {
-               append_vectors(all, body.velocities);
-             }));
+void add_attributes(VtuArrays& arrays, const Simulation& simulation,
+                    const std::vector<BodyView>& bodies, std::size_t count) {
+  arrays.add<std::uint32_t>("body", "UInt32", 1, count, [&] {
+    std::uint32_t number = 0;
+    for (const BodyView& body : bodies) arrays.repeat(number++, body.positions.size());
+  });
+  arrays.add<std::uint8_t>("kind", "UInt8", 1, count, [&] {
+    for (const BodyView& body : bodies) {
+      arrays.repeat(static_cast<std::uint8_t>(body.kind), body.positions.size());
+    }
+  });
+  std::vector<LiquidFields> fields;
+  for (const BodyView& body : bodies) fields.push_back(liquid_fields_of(simulation, body));
+  add_field(arrays, "density", bodies, fields, count, &LiquidFields::density);
+  add_field(arrays, "pressure", bodies, fields, count, &LiquidFields::pressure);
+  arrays.add<Real>("radius", "Float64", 1, count, [&] {
+    for (const BodyView& body : bodies) arrays.append(body.radii);
+  });
+  add_vectors(arrays, "velocity", bodies, count, &BodyView::velocities);
 }
 
 /// One cell has all points, because viewers display points of cells only.
 void add_cell(VtuArrays& arrays, std::size_t count) {
-  std::vector<std::int32_t> points(count);
-  std::iota(points.begin(), points.end(), 0);
   const std::size_t cells = count == 0 ? 0 : 1;
   constexpr std::uint8_t kPolyVertex = 2;
-  arrays.add("connectivity", "Int32", 1, points);
-  arrays.add("offsets", "Int32", 1, std::vector(cells, static_cast<std::int32_t>(count)));
-  arrays.add("types", "UInt8", 1, std::vector(cells, kPolyVertex));
+  arrays.add<std::int32_t>("connectivity", "Int32", 1, count, [&] {
+    for (std::size_t i = 0; i < count; ++i) arrays.append_one(static_cast<std::int32_t>(i));
+  });
+  arrays.add<std::int32_t>("offsets", "Int32", 1, cells,
+                           [&] { arrays.repeat(static_cast<std::int32_t>(count), cells); });
+  arrays.add<std::uint8_t>("types", "UInt8", 1, cells, [&] { arrays.repeat(kPolyVertex, cells); });
 }
 
-std::string vtu_content(const Simulation& simulation) {
-  const std::size_t count = simulation.particle_count();
-  VtuArrays arrays;
+void add_all(VtuArrays& arrays, const Simulation& simulation, std::size_t count) {
+  const std::vector<BodyView> bodies = simulation.bodies();
+  arrays.clear();
   arrays.open("Points");
-  arrays.add("Points", "Float64", 3,
-             of_particles<Real>(simulation, 3, [](const BodyView& body, std::vector<Real>& all) {
-               append_vectors(all, body.positions);
-             }));
+  add_vectors(arrays, "Points", bodies, count, &BodyView::positions);
   arrays.close("Points");
   arrays.open("Cells");
   add_cell(arrays, count);
   arrays.close("Cells");
   arrays.open("PointData");
-  add_attributes(arrays, simulation);
+  add_attributes(arrays, simulation, bodies, count);
   arrays.close("PointData");
+}
 
+/// Returns the part of the file before the arrays.
+std::string vtu_start(const Simulation& simulation, const VtuArrays& arrays, std::size_t count) {
   std::string text =
       "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" "
       "byte_order=\"LittleEndian\" header_type=\"UInt64\" compressor=\"vtkLZ4DataCompressor\">\n"
@@ -156,8 +193,7 @@ std::string vtu_content(const Simulation& simulation) {
   text += "</DataArray>\n</FieldData>\n<Piece NumberOfPoints=\"" + std::to_string(count) +
           "\" NumberOfCells=\"" + (count == 0 ? "0" : "1") + "\">\n" + arrays.xml() +
           "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
-  text += arrays.bytes();
-  return text + "\n</AppendedData>\n</VTKFile>\n";
+  return text;
 }
 
 class VtuWriter final : public SeriesWriter {
@@ -165,9 +201,17 @@ class VtuWriter final : public SeriesWriter {
   using SeriesWriter::SeriesWriter;
 
  protected:
-  std::string content(const Simulation& simulation) const override {
-    return vtu_content(simulation);
+  Status write_content(const Simulation& simulation, OutputFile& file) override {
+    const std::size_t count = simulation.particle_count();
+    add_all(arrays_, simulation, count);
+    const std::string start = vtu_start(simulation, arrays_, count);
+    if (Status written = file.append(start); !written) return written;
+    if (Status written = file.append(arrays_.bytes()); !written) return written;
+    return file.append("\n</AppendedData>\n</VTKFile>\n");
   }
+
+ private:
+  VtuArrays arrays_;  // keeps its memory
 };
 
 /// Writes a list of the files of a series with their times, when they are complete.

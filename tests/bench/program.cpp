@@ -12,6 +12,7 @@
 #include "tests/bench/fanout/fanout.h"
 #include "tests/bench/faults/faults.h"
 #include "tests/bench/instructions/instructions.h"
+#include "tests/bench/output/output.h"
 #include "tests/bench/race/race.h"
 #include "tests/bench/seeks.h"
 #include "tests/bench/soak/soak.h"
@@ -43,6 +44,7 @@ int run_command(int argc, char** argv) {
   add_faults_command(app, exit_code);
   add_durability_command(app, exit_code);
   add_recovery_command(app, exit_code);
+  add_output_command(app, exit_code);
   add_race_command(app, exit_code);
   add_document_command(app, exit_code);
   try {

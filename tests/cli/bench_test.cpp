@@ -122,5 +122,22 @@ TEST(BenchValidate, TableIsWrittenThreeTimes) {
   EXPECT_THAT(read_file(folder.file("results/validation.json")), testing::StartsWith("[\n"));
 }
 
+TEST(Bench, OutputMeasuresEachFormat) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      run_bench({"output", "--case", "dam-break-1k", "--output", folder.file("results")});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  const Table table = read_csv(folder.file("results/output.csv"));
+  ASSERT_EQ(table.rows.size(), 6u);
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    EXPECT_GT(table.number(row, "write [ms]"), 0);
+    EXPECT_EQ(table.number(row, "particles"), 1024);
+    EXPECT_GE(table.number(row, "bytes per particle"), 12);  // a position in single precision
+  }
+  EXPECT_EQ(table.text(1, "format"), ".npy");
+  EXPECT_NEAR(table.number(1, "bytes per particle"), 48, 0.1);
+  EXPECT_EQ(run_bench({"output", "--case", "none"}).exit_code, 1);
+}
+
 }  // namespace
 }  // namespace vat::test::bench_test

@@ -53,6 +53,7 @@ INSTANTIATE_TEST_SUITE_P(
                     WrongUse{with_scene({"--integrator", "heum"}), "did you mean \"heun\"?"},
                     WrongUse{with_scene({"--isa", "avx"}), "did you mean \"avx2\"?"},
                     WrongUse{{"simulate"}, "scene"}, WrongUse{{"validate"}, "scene"},
+                    WrongUse{{"convert"}, "source"},
                     WrongUse{with_scene({"--speed", "2"}), "--speed"},
                     WrongUse{with_scene({"--until", "-1"}), "--until"},
                     WrongUse{with_scene({"--until", "nan"}), "--until"},
@@ -78,8 +79,8 @@ INSTANTIATE_TEST_SUITE_P(
                     WrongUse{with_scene({"--control", "loose"}), "--control"},
                     WrongUse{with_scene({"--accuracy", "1"}), "--accuracy"},
                     WrongUse{with_scene({"--accuracy", "1e-3", "--dt", "0.001"}), "--accuracy"},
-                    WrongUse{with_scene({"--output", "run.xyz"}), ".csv, .pvd, .ply or .npy"},
-                    WrongUse{with_scene({"--output", "run"}), ".csv, .pvd, .ply or .npy"},
+                    WrongUse{with_scene({"--output", "run.xyz"}), ".npy, .npz or .glb"},
+                    WrongUse{with_scene({"--output", "run"}), ".npy, .npz or .glb"},
                     WrongUse{with_scene({"--diagnostics", "run.txt"}), "must end in .csv"},
                     WrongUse{with_scene({"--diagnostics", "scene.json"}), "must end in .csv"},
                     WrongUse{with_scene({"--output", "a.csv", "--diagnostics", "./a.csv"}),
@@ -153,7 +154,7 @@ TEST(Usage, HelpDescribesTheOutputFiles) {
   const ProgramResult result = run_vat({"simulate", "--help"});
   EXPECT_EQ(result.exit_code, 0);
   for (const char* text :
-       {".csv", ".pvd", ".ply", ".npy", "--every", "velocity_verlet", "2 wrong"}) {
+       {".csv", ".pvd", ".npz", ".glb", "--every", "velocity_verlet", "2 wrong"}) {
     EXPECT_THAT(result.out, HasSubstr(text));
   }
 }

@@ -6,7 +6,7 @@
 /// vertices in range and valid vertex indices.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace vat;
-  constexpr const char* kFiles[] = {"a.obj", "a.stl", "a.ply", "a.glb"};
+  constexpr const char* kFiles[] = {"a.obj", "a.stl", "a.ply", "a.glb", "a.gltf"};
   if (size == 0) return 0;
   const std::string bytes(fuzz::to_text(data + 1, size - 1));
   const Result<MeshShape> mesh = read_mesh(bytes, kFiles[data[0] % std::size(kFiles)], 0.5);

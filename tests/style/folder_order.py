@@ -23,8 +23,8 @@ FOLDER_ORDER = (
     "core/stepping", "core/sleep", "core/saved", "core/simulation",
     # steps on other devices
     "core/device/opencl", "core/device/tait", "core/device",
-    "protocol/json", "protocol/files", "protocol/scene", "protocol/published", "protocol/frame", "protocol/messages",
-    "protocol/recording", "protocol/python/native",
+    "protocol/json", "protocol/files", "protocol/scene", "protocol/convert", "protocol/published", "protocol/frame",
+    "protocol/messages", "protocol/recording", "protocol/python/native",
     # the client library
     "protocol/client/connection", "protocol/client/methods", "protocol/client/exchange", "protocol/client",
     # files, sockets and measurements, without sessions

@@ -36,6 +36,8 @@ void add_serve_command(CLI::App& app, int& exit_code);
 void add_simulate_command(CLI::App& app, int& exit_code);
 /// Adds `vat validate`.
 void add_validate_command(CLI::App& app, int& exit_code);
+/// Adds `vat convert`, which reads scenes of SPlisHSPlasH.
+void add_convert_command(CLI::App& app, int& exit_code);
 /// Adds `vat devices`.
 void add_devices_command(CLI::App& app, int& exit_code);
 /// Adds `vat script`, which plays protocol scripts against a server.

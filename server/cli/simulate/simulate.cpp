@@ -43,6 +43,10 @@ constexpr const char* kSimulateFooter = R"(Output files
   .ply   binary points in single precision, coloured by kind, one file per output time
   .npy   one array [outputs, particles, 6] of float64: x, y, z, vx, vy, vz; only if the number of
          particles is constant
+  .npz   arrays for numpy.load: time, count of particles, body, number in the body, position,
+         velocity. Missing particles are -1 and NaN
+  .glb   glTF: animated meshes of rigid bodies, and points of the other particles at up to 120
+         key frames
 Particles are in the order of the scene's bodies. Numbers in text have all digits that
 an exact copy needs. All units are SI.
 
@@ -302,7 +306,8 @@ void add_simulate_options(CLI::App& command, SimulateOptions& options) {
   add_isa_option(command, options.instructions);
   add_device_option(command, options.device);
   command
-      .add_option("--output", options.output, "File for the particles: .csv, .pvd, .ply or .npy")
+      .add_option("--output", options.output,
+                  std::string("File for the particles: ") + kFrameEndings)
       ->check(CLI::Validator(check_frame_file_name, "FILE"));
   command.add_option("--diagnostics", options.diagnostics, "File for the diagnostics: .csv")
       ->check(csv_file_name());

@@ -91,6 +91,37 @@ std::string glb(std::string json = kGltf) {
   return bytes + std::string("BIN\0", 4) + buffer;
 }
 
+std::string base64(const std::string& bytes) {
+  constexpr std::string_view kLetters =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t bits = 0;
+    for (std::size_t b = 0; b < 3; ++b) {
+      bits = bits << 8 | (i + b < bytes.size() ? static_cast<unsigned char>(bytes[i + b]) : 0U);
+    }
+    for (std::size_t c = 0; c < 4; ++c) {
+      text += i * 4 + c * 3 > bytes.size() * 4 ? '=' : kLetters[bits >> (18 - 6 * c) & 63];
+    }
+  }
+  return text;
+}
+
+std::string with(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+/// The same document with the URI of its buffer.
+std::string gltf(const std::string& uri) {
+  return with(kGltf, "\"byteLength\": 72", "\"byteLength\": 72, \"uri\": \"" + uri + '"');
+}
+
+std::string embedded_gltf() {
+  return gltf("data:application/octet-stream;base64," + base64(gltf_buffer()));
+}
+
 struct Format {
   const char* file;
   std::string bytes;
@@ -135,14 +166,8 @@ TEST_P(ReadMesh, RefusesEachBrokenFile) {
 INSTANTIATE_TEST_SUITE_P(Of, ReadMesh,
                          testing::Values(Format{"text.stl", stl_text()},
                                          Format{"binary.STL", binary_stl()},
-                                         Format{"text.ply", ply_text()},
-                                         Format{"mesh.glb", glb()}));
-
-std::string with(std::string text, const std::string& from, const std::string& to) {
-  const std::size_t at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
-}
+                                         Format{"text.ply", ply_text()}, Format{"mesh.glb", glb()},
+                                         Format{"mesh.gltf", embedded_gltf()}));
 
 struct Mistake {
   const char* file;
@@ -174,11 +199,56 @@ TEST(ReadMeshFile, NamesTheMistake) {
            Mistake{"a.glb", glb(with(kGltf, "\"indices\"", "\"mode\": 5, \"indices\"")), "strips"},
            Mistake{"a.glb", glb(with(kGltf, "\"scene\"", "\"extensionsRequired\": [], \"scene\"")),
                    "extensions"},
+           Mistake{"a.gltf", with(embedded_gltf(), ";base64", ""), "needs base64"},
+           Mistake{"a.gltf", with(embedded_gltf(), ";base64,", ";base64,*"), "not base64"},
+           Mistake{"a.gltf", with(embedded_gltf(), "\"buffer\": 0", "\"buffer\": 1"),
+                   "a buffer does not exist"},
+           Mistake{"a.gltf", with(embedded_gltf(), "[{\"byteLength\"", "[7, {\"byteLength\""),
+                   "'uri' belongs to an object"},
+           Mistake{"a.gltf", kGltf, "beyond the buffer"},
+           Mistake{"a.gltf", gltf("a.bin"), "needs its buffer in the file"},
        }) {
     const Result<MeshShape> mesh = read_mesh(mistake.bytes, mistake.file, 1);
     ASSERT_EQ(lines(mesh), "bad_mesh \n") << mistake.message;
     EXPECT_THAT(mesh.errors()[0].message, HasSubstr(mistake.message));
   }
+}
+
+TEST(ReadMeshFile, BuffersAreFilesInTheFolderOfTheMesh) {
+  const MeshFiles files = [](const std::string& name) -> Result<std::string> {
+    if (name == "parts/the buffer.bin") return gltf_buffer();
+    return Error{"no_such_file", "", name + ": is not there"};
+  };
+  const Result<MeshShape> mesh = read_mesh(gltf("the%20buffer.bin"), "parts/a.gltf", 1, files);
+  ASSERT_EQ(lines(mesh), "");
+  EXPECT_DOUBLE_EQ(volume_of(mesh.value()), 1);
+  const Result<MeshShape> other = read_mesh(gltf("other.bin"), "parts/a.gltf", 1, files);
+  ASSERT_EQ(lines(other), "bad_mesh \n");
+  EXPECT_THAT(other.errors()[0].message, HasSubstr("parts/other.bin: is not there"));
+}
+
+TEST(ReadMeshFile, BuffersStayBelowTheFolderOfTheScene) {
+  const Result<MeshShape> mesh =
+      read_mesh(gltf("../../etc/hosts"), "parts/a.gltf", 1, meshes_in_folder("."));
+  ASSERT_EQ(lines(mesh), "bad_mesh \n");
+  EXPECT_THAT(mesh.errors()[0].message, HasSubstr("must be a file below the scene's folder"));
+}
+
+TEST(ReadMeshFile, BuffersHaveALimit) {
+  const MeshFiles files = [](const std::string&) -> Result<std::string> {
+    return std::string(kMaxMeshBytes / 2, '\0');
+  };
+  const auto with_buffers = [](int count) {
+    std::string buffers = "{\"byteLength\": 1, \"uri\": \"a.bin\"}";
+    for (int i = 1; i < count; ++i) buffers += ", {\"byteLength\": 1, \"uri\": \"a.bin\"}";
+    return with(kGltf, "{\"byteLength\": 72}", buffers);
+  };
+  const auto message = [&](int count) {
+    return read_mesh(with_buffers(count), "a.gltf", 1, files).errors()[0].message;
+  };
+  EXPECT_THAT(message(2), testing::Not(HasSubstr("more than")));
+  EXPECT_THAT(message(3), HasSubstr("buffers have more than 16777216 bytes"));
+  EXPECT_THAT(message(65), HasSubstr("a list of at most 64"));
 }
 
 TEST(ReadMeshFile, MirroredNodesKeepTheirOutside) {
