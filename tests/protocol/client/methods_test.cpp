@@ -8,8 +8,6 @@
 namespace vat::client::methods_test {
 namespace {
 
-using testing::HasSubstr;
-
 template <class Params>
 Json write(const Params& params) {
   Json json;
