@@ -26,7 +26,7 @@ FOLDER_ORDER = (
     "protocol/json", "protocol/files", "protocol/scene", "protocol/convert", "protocol/published", "protocol/frame",
     "protocol/messages", "protocol/recording", "protocol/python/native",
     # files, sockets and measurements, without sessions
-    "server/support", "server/output", "server/storage/sqlite", "server/storage", "server/access", "server/transport",
+    "server/support", "server/output", "server/output/alembic", "server/storage/sqlite", "server/storage", "server/access", "server/transport",
     "server/operations", "server/messages", "server/http",
     # the parts of a session
     "server/clients", "server/frames", "server/recording", "server/people", "server/history", "server/session/ticks",
