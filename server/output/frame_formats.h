@@ -40,6 +40,12 @@ Result<std::unique_ptr<FrameWriter>> create_npz_writer(const std::string& name,
 Result<std::unique_ptr<FrameWriter>> create_glb_writer(const std::string& name,
                                                        std::size_t frame_count);
 
+/// Returns a writer of an Alembic archive (Ogawa) in single precision, below an object that turns
+/// the z axis upwards. Particles of liquids and deformable bodies are points with velocities, ids
+/// (numbers in the body) and one width. Rigid bodies are transformations with a mesh. Creates the
+/// file, and returns an error if the creation fails.
+Result<std::unique_ptr<FrameWriter>> create_abc_writer(const std::string& name);
+
 /// Returns a writer of a series of binary point files for viewers. Properties in single precision:
 /// position [m], velocity [m/s], radius [m], colour by kind of body, index of the body in the
 /// scene.

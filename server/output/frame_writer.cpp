@@ -18,7 +18,7 @@ std::string ending_of(const std::string& name) {
 bool is_frame_file_name(const std::string& name) {
   const std::string ending = ending_of(name);
   return ending == ".csv" || ending == ".pvd" || ending == ".ply" || ending == ".npy" ||
-         ending == ".npz" || ending == ".glb";
+         ending == ".npz" || ending == ".glb" || ending == ".abc";
 }
 
 Result<std::unique_ptr<FrameWriter>> create_frame_writer(const std::string& name,
@@ -27,6 +27,7 @@ Result<std::unique_ptr<FrameWriter>> create_frame_writer(const std::string& name
   if (ending == ".csv") return create_csv_writer(name);
   if (ending == ".npy") return create_npy_writer(name);
   if (ending == ".npz") return create_npz_writer(name, frame_count);
+  if (ending == ".abc") return create_abc_writer(name);
   if (ending == ".glb") return create_glb_writer(name, frame_count);
   if (ending == ".pvd") return create_pvd_writer(name, frame_count);
   if (ending == ".ply") return create_ply_writer(name, frame_count);

@@ -22,7 +22,7 @@ class FrameWriter {
 };
 
 /// File name extensions that create_frame_writer() supports, for error messages.
-inline constexpr const char* kFrameEndings = ".csv, .pvd, .ply, .npy, .npz or .glb";
+inline constexpr const char* kFrameEndings = ".csv, .pvd, .ply, .npy, .npz, .glb or .abc";
 
 /// Returns whether the name has one of the extensions in kFrameEndings.
 bool is_frame_file_name(const std::string& name);
@@ -34,6 +34,7 @@ bool is_frame_file_name(const std::string& name);
 /// - `.npy`: one array [times, particles, 6] of float64: x, y, z, vx, vy, vz.
 /// - `.npz`: arrays by name; the number of particles may change.
 /// - `.glb`: glTF with animation, for viewers of pictures.
+/// - `.abc`: Alembic, for programs of animation.
 ///
 /// `frame_count` is the number of output times.
 Result<std::unique_ptr<FrameWriter>> create_frame_writer(const std::string& name,

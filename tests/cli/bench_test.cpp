@@ -128,7 +128,7 @@ TEST(Bench, OutputMeasuresEachFormat) {
       run_bench({"output", "--case", "dam-break-1k", "--output", folder.file("results")});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   const Table table = read_csv(folder.file("results/output.csv"));
-  ASSERT_EQ(table.rows.size(), 6u);
+  ASSERT_EQ(table.rows.size(), 7u);
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     EXPECT_GT(table.number(row, "write [ms]"), 0);
     EXPECT_EQ(table.number(row, "particles"), 1024);

@@ -41,7 +41,8 @@ TEST(Output, FullDiskIsAnErrorAndLeavesNoResult) {
   for (const auto& [blocks, until, name, full] :
        {Case{1, "0", "run.csv"}, Case{1, "0", "run.npy"}, Case{1, "0", "run.pvd", "run.vtu"},
         Case{1, "0", "run.ply"}, Case{1, "0", "run.npz"}, Case{1, "0", "run.glb"},
-        Case{256, "0.4", "run.csv"}, Case{256, "0.4", "run.npy"}, Case{256, "0.4", "run.npz"}}) {
+        Case{1, "0", "run.abc"}, Case{256, "0.4", "run.csv"}, Case{256, "0.4", "run.npy"},
+        Case{256, "0.4", "run.npz"}}) {
     const TemporaryFolder folder;
     const ProgramResult result = run_vat_with_file_limit(
         blocks, {"simulate", test_scene("mixed"), "--until", until, "--output", folder.file(name)});
@@ -64,7 +65,8 @@ TEST(Output, FullDiskForDiagnosticsIsAnError) {
 
 TEST(Output, FolderInPlaceOfAFileIsAnError) {
   const TemporaryFolder folder;
-  for (const char* name : {"run.csv", "run.npy", "run.npz", "run.pvd", "run.ply", "run.glb"}) {
+  for (const char* name :
+       {"run.csv", "run.npy", "run.npz", "run.pvd", "run.ply", "run.glb", "run.abc"}) {
     std::filesystem::create_directory(folder.file(name));
     const ProgramResult result =
         run_vat({"simulate", test_scene("pair"), "--until", "0", "--output", folder.file(name)});
@@ -91,7 +93,8 @@ TEST(Output, SceneWithoutBodiesHasNoRows) {
   const TemporaryFolder folder;
   const std::string scene = folder.file("empty.json");
   std::ofstream(scene) << R"({"format": "vat.scene/1", "materials": [], "bodies": []})";
-  for (const char* name : {"run.csv", "run.npy", "run.npz", "run.pvd", "run.ply", "run.glb"}) {
+  for (const char* name :
+       {"run.csv", "run.npy", "run.npz", "run.pvd", "run.ply", "run.glb", "run.abc"}) {
     const ProgramResult result =
         run_vat({"simulate", scene, "--until", "0", "--output", folder.file(name), "--diagnostics",
                  folder.file("d.csv")});
@@ -101,6 +104,7 @@ TEST(Output, SceneWithoutBodiesHasNoRows) {
   EXPECT_THAT(read_npy(folder.file("run.npy")).shape, ElementsAre(1u, 0u, 6u));
   EXPECT_THAT(read_file(folder.file("run.npz")), StartsWith("PK"));
   EXPECT_THAT(read_file(folder.file("run.glb")), StartsWith("glTF"));
+  EXPECT_THAT(read_file(folder.file("run.abc")), StartsWith("Ogawa\xff"));
   EXPECT_TRUE(read_vtu(folder.file("run.vtu")).points.empty());
   EXPECT_TRUE(read_ply(folder.file("run.ply")).empty());
   const Table diagnostics = read_csv(folder.file("d.csv"));

@@ -79,8 +79,8 @@ INSTANTIATE_TEST_SUITE_P(
                     WrongUse{with_scene({"--control", "loose"}), "--control"},
                     WrongUse{with_scene({"--accuracy", "1"}), "--accuracy"},
                     WrongUse{with_scene({"--accuracy", "1e-3", "--dt", "0.001"}), "--accuracy"},
-                    WrongUse{with_scene({"--output", "run.xyz"}), ".npy, .npz or .glb"},
-                    WrongUse{with_scene({"--output", "run"}), ".npy, .npz or .glb"},
+                    WrongUse{with_scene({"--output", "run.xyz"}), ".npz, .glb or .abc"},
+                    WrongUse{with_scene({"--output", "run"}), ".npz, .glb or .abc"},
                     WrongUse{with_scene({"--diagnostics", "run.txt"}), "must end in .csv"},
                     WrongUse{with_scene({"--diagnostics", "scene.json"}), "must end in .csv"},
                     WrongUse{with_scene({"--output", "a.csv", "--diagnostics", "./a.csv"}),
@@ -154,7 +154,7 @@ TEST(Usage, HelpDescribesTheOutputFiles) {
   const ProgramResult result = run_vat({"simulate", "--help"});
   EXPECT_EQ(result.exit_code, 0);
   for (const char* text :
-       {".csv", ".pvd", ".npz", ".glb", "--every", "velocity_verlet", "2 wrong"}) {
+       {".csv", ".pvd", ".npz", ".abc", "--every", "velocity_verlet", "2 wrong"}) {
     EXPECT_THAT(result.out, HasSubstr(text));
   }
 }

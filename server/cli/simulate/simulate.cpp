@@ -47,6 +47,7 @@ constexpr const char* kSimulateFooter = R"(Output files
          velocity. Missing particles are -1 and NaN
   .glb   glTF: animated meshes of rigid bodies, and points of the other particles at up to 120
          key frames
+  .abc   Alembic: points with velocities and ids, and rigid bodies as transformations with meshes
 Particles are in the order of the scene's bodies. Numbers in text have all digits that
 an exact copy needs. All units are SI.
 

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 using std::chrono::steady_clock;
 using Milliseconds = std::chrono::duration<double, std::milli>;
 
-constexpr const char* kFormats[] = {".csv", ".npy", ".npz", ".ply", ".pvd", ".glb"};
+constexpr const char* kFormats[] = {".csv", ".npy", ".npz", ".ply", ".pvd", ".glb", ".abc"};
 
 struct OutputCase {
   const char* name;
