@@ -249,14 +249,30 @@ Status HostInterface::measure_liquid(BodyId id, LiquidFields& fields) const {
   if (body->kind != BodyKind::liquid) {
     return Error{"not_liquid", "/body", "body '" + body->name + "' is not liquid"};
   }
-  impl_->measure_all();  // leaves density and pressure of the present positions in `measured`
-  const auto copy = [&](const std::vector<Real>& column, std::vector<Real>& part) {
-    VAT_CHECK(column.size() >= body->particles.end);
-    part.assign(column.begin() + body->particles.begin, column.begin() + body->particles.end);
-  };
-  copy(impl_->measured.of<LiquidScratch>().density, fields.density);
-  copy(impl_->measured.of<LiquidScratch>().pressure, fields.pressure);
+  impl_->measure_all();
+  impl_->copy_fields(*body, fields);
   return {};
+}
+
+std::vector<LiquidFields> Simulation::liquid_fields() const {
+  const std::vector<ModelBody>& bodies = impl_->all().bodies;
+  std::vector<LiquidFields> fields(bodies.size());
+  const auto is_liquid = [](const ModelBody& body) { return body.kind == BodyKind::liquid; };
+  if (std::ranges::none_of(bodies, is_liquid)) return fields;
+  impl_->measure_all();
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    if (is_liquid(bodies[i])) impl_->copy_fields(bodies[i], fields[i]);
+  }
+  return fields;
+}
+
+void SimulationImpl::copy_fields(const ModelBody& body, LiquidFields& fields) const {
+  const auto copy = [&](const std::vector<Real>& column, std::vector<Real>& part) {
+    VAT_CHECK(column.size() >= body.particles.end);
+    part.assign(column.begin() + body.particles.begin, column.begin() + body.particles.end);
+  };
+  copy(measured.of<LiquidScratch>().density, fields.density);
+  copy(measured.of<LiquidScratch>().pressure, fields.pressure);
 }
 
 std::string Simulation::plan_text() const {

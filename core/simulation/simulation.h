@@ -102,6 +102,9 @@ class Simulation : public HostInterface {
   /// Returns the SPH fields of a liquid body. The cost is about one force evaluation. Fails if the
   /// body does not exist or is not liquid.
   Result<LiquidFields> liquid_fields(BodyId id) const;
+  /// Returns the fields of all bodies, in the order of bodies(), for the cost of one body. The
+  /// fields of bodies that are not liquid are empty.
+  std::vector<LiquidFields> liquid_fields() const;
   /// Measures the current state. The cost is about one force evaluation.
   Diagnostics diagnostics() const;
 

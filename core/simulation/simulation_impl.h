@@ -88,6 +88,8 @@ struct SimulationImpl : SimulationContent {
   /// Runs the plan for all bodies, with the buffers `measured`. Returns the sums over all
   /// particles.
   Diagnostics measure_all() const;
+  /// Copies density and pressure of a liquid body, which measure_all() has left in `measured`.
+  void copy_fields(const ModelBody& body, LiquidFields& fields) const;
   /// Returns the current state of the scene, for the checks of commands.
   CurrentScene present() const;
 

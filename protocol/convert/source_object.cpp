@@ -72,6 +72,10 @@ void write_placement(const Placement& placement, Json& body) {
 
 std::optional<MeshShape> read_geometry(Conversion& conversion, const std::string& file,
                                        const std::string& path, const Vec3& scale) {
+  if (!file.ends_with(".obj") && !file.ends_with(".ply")) {  // the formats of the source
+    add_error(conversion.report.errors, "bad_mesh", path, "must end in .obj or .ply");
+    return {};
+  }
   const Result<std::string> bytes = (*conversion.meshes)(file);
   Result<MeshShape> mesh = bytes ? read_mesh(bytes.value(), file, 1) : bytes.errors();
   if (!mesh) {

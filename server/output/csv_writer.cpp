@@ -1,6 +1,7 @@
 #include "server/output/frame_formats.h"
 
 #include <utility>
+#include <vector>
 
 #include "protocol/files/output_file.h"
 #include "protocol/files/text.h"
@@ -16,10 +17,9 @@ void append_vector(std::string& text, const Vec3& v) {
   }
 }
 
-void append_body(std::string& text, const Simulation& simulation, const BodyView& body) {
-  const LiquidFields fields = liquid_fields_of(simulation, body);
+void append_body(std::string& text, Real time, const BodyView& body, const LiquidFields& fields) {
   std::string start;  // the same for every row of the body
-  append_number(start, simulation.time());
+  append_number(start, time);
   start += ',';
   append_csv_field(start, body.name);
   start += ',';
@@ -43,9 +43,11 @@ class CsvWriter final : public FrameWriter {
   explicit CsvWriter(OutputFile file) : file_(std::move(file)) {}
 
   Status write(const Simulation& simulation) override {
-    for (const BodyView& body : simulation.bodies()) {
+    const std::vector<BodyView> bodies = simulation.bodies();
+    const std::vector<LiquidFields> fields = simulation.liquid_fields();
+    for (std::size_t i = 0; i < bodies.size(); ++i) {
       text_.clear();
-      append_body(text_, simulation, body);
+      append_body(text_, simulation.time(), bodies[i], fields[i]);
       if (Status written = file_.append(text_); !written) return written;
     }
     return {};

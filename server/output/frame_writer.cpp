@@ -44,9 +44,4 @@ std::string series_name(const std::string& name, std::size_t index, std::size_t 
   return stem + "-" + std::string(width - std::min(width, digits.size()), '0') + digits + ending;
 }
 
-LiquidFields liquid_fields_of(const Simulation& simulation, const BodyView& body) {
-  if (body.kind != BodyKind::liquid) return {};
-  return simulation.liquid_fields(body.id).value();
-}
-
 }  // namespace vat

@@ -44,7 +44,4 @@ Result<std::unique_ptr<FrameWriter>> create_frame_writer(const std::string& name
 /// one file uses `name`.
 std::string series_name(const std::string& name, std::size_t index, std::size_t count);
 
-/// Returns the liquid fields of a body. The fields are empty if the body is not liquid.
-LiquidFields liquid_fields_of(const Simulation& simulation, const BodyView& body);
-
 }  // namespace vat

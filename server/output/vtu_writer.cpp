@@ -146,8 +146,7 @@ void add_attributes(VtuArrays& arrays, const Simulation& simulation,
       arrays.repeat(static_cast<std::uint8_t>(body.kind), body.positions.size());
     }
   });
-  std::vector<LiquidFields> fields;
-  for (const BodyView& body : bodies) fields.push_back(liquid_fields_of(simulation, body));
+  const std::vector<LiquidFields> fields = simulation.liquid_fields();
   add_field(arrays, "density", bodies, fields, count, &LiquidFields::density);
   add_field(arrays, "pressure", bodies, fields, count, &LiquidFields::pressure);
   arrays.add<Real>("radius", "Float64", 1, count, [&] {

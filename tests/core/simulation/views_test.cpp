@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tests/support/edited_scene.h"
+#include "tests/support/mixed_scenes.h"
 #include "tests/support/resting_scenes.h"
 
 namespace vat::views_test {
@@ -64,6 +65,24 @@ TEST(Views, KeptViewsIncludeSleepers) {
   simulation.advance(asleep);
   ASSERT_EQ(simulation.sleeping_body_count(), 1U);
   expect_kept(scene, asleep);
+}
+
+TEST(LiquidFields, OfAllBodiesAreThoseOfEachBody) {
+  Simulation simulation =
+      make_simulation(make_wet_mixture(IntegratorId::velocity_verlet, PressureSolver::tait));
+  simulation.advance(5);
+  const std::vector<BodyView> bodies = simulation.bodies();
+  const std::vector<LiquidFields> fields = simulation.liquid_fields();
+  ASSERT_EQ(fields.size(), bodies.size());
+  std::size_t liquids = 0;
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const Result<LiquidFields> own = simulation.liquid_fields(bodies[i].id);
+    EXPECT_EQ(own.ok(), bodies[i].kind == BodyKind::liquid);
+    liquids += own.ok() ? 1 : 0;
+    EXPECT_EQ(fields[i].density, own.ok() ? own.value().density : std::vector<Real>());
+    EXPECT_EQ(fields[i].pressure, own.ok() ? own.value().pressure : std::vector<Real>());
+  }
+  EXPECT_EQ(liquids, 2U);
 }
 
 }  // namespace
