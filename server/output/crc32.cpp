@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t kCrcSlices = 8;  // bytes of one step, with one table each
 using CrcTables = std::array<std::array<std::uint32_t, 256>, kCrcSlices>;
 
-constexpr CrcTables make_crc_tables() {
+CrcTables make_crc_tables() {
   constexpr std::uint32_t kPolynomial = 0xEDB88320;  // reversed
   CrcTables tables{};
   for (std::uint32_t byte = 0; byte < 256; ++byte) {
@@ -29,12 +29,11 @@ constexpr CrcTables make_crc_tables() {
   return tables;
 }
 
-constexpr CrcTables kCrcTables = make_crc_tables();
-
 }  // namespace
 
 std::uint32_t crc32(std::string_view bytes, std::uint32_t earlier) {
   static_assert(std::endian::native == std::endian::little);
+  static const CrcTables kCrcTables = make_crc_tables();
   std::uint32_t crc = ~earlier;
   for (; bytes.size() >= kCrcSlices; bytes.remove_prefix(kCrcSlices)) {
     std::uint64_t word = 0;

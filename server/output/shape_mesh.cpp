@@ -82,8 +82,12 @@ SurfaceMesh surface(const CylinderShape& cylinder) {
   connect_tip(2, 0, false, mesh);
   connect_circles(2, 2 + kSides, mesh);
   connect_tip(2 + kSides, 1, true, mesh);
-  const Quat turn = Quat::FromTwoVectors(Vec3::UnitZ(), cylinder.axis);
-  for (Vec3& vertex : mesh.vertices) vertex = turn * vertex + cylinder.center;
+  const Vec3 z = cylinder.axis.normalized();
+  const Vec3 x = z.unitOrthogonal();
+  const Vec3 y = z.cross(x);
+  for (Vec3& vertex : mesh.vertices) {
+    vertex = cylinder.center + vertex.x() * x + vertex.y() * y + vertex.z() * z;
+  }
   return mesh;
 }
 
