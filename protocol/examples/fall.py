@@ -1,4 +1,4 @@
-"""example.py URL: shows a ball that falls for half a second, in a separate session."""
+"""fall.py URL: shows a ball that falls for half a second, in a separate session."""
 
 import sys
 
