@@ -29,7 +29,9 @@ bool FrameWindow::acknowledge(std::uint32_t number, SteadyClock::time_point now)
     sent_at = in_flight_.front().at;
     in_flight_.pop_front();
   }
-  if (sent_at) measure(now - *sent_at, now);
+  // Acknowledgement and frame are on different threads. A client can acknowledge a frame that was
+  // sent after `now`, because it knows the number from an earlier subscription or guesses it.
+  if (sent_at && *sent_at <= now) measure(now - *sent_at, now);
   return true;
 }
 

@@ -23,6 +23,8 @@ HEADERS = (
     "core/scene/world.h", "core/support/result.h", "core/support/parallel.h",
     "core/support/instruction_set.h", "core/threads/thread_pool.h", "core/limits.h",
     "core/types.h", "protocol/scene/scene_json.h", "protocol/frame/frame_codec.h",
+    "protocol/client/client.h", "protocol/client/exchange/options.h",
+    "protocol/client/exchange/frame.h", "protocol/client/exchange/call_error.h",
 )
 LINK = re.compile(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)\s]+)\)")
 FENCE = re.compile(r"(^```.*?^```)", re.MULTILINE | re.DOTALL)
@@ -67,6 +69,11 @@ def python_reference() -> str:
     return "\n".join(parts)
 
 
+def is_outer(name: str) -> bool:
+    """Returns whether a name is directly in a namespace."""
+    return name.removeprefix("vat::client::").removeprefix("vat::").count("::") == 0
+
+
 class CppReference:
     """Classes, enumerations and functions of HEADERS, from the XML of Doxygen."""
 
@@ -86,20 +93,20 @@ class CppReference:
             name = inner.text or ""
             kind = "class" if inner.attrib["refid"].startswith("class") else "struct"
             # A nested class is shown with its outer class, and a specialisation with its template.
-            if name.count("::") == 1 and "<" not in name:
+            if is_outer(name) and "<" not in name:
                 found.append(f"```{{doxygen{kind}}} {name}\n:members:\n```\n")
         for member in compound.iter("memberdef"):
             kind, name = member.attrib["kind"], member.findtext("qualifiedname") or ""
-            if kind == "enum" and name.count("::") == 1:
+            if kind == "enum" and is_outer(name):
                 found.append(f"```{{doxygenenum}} {name}\n```\n")
-            elif kind == "function" and name.count("::") == 1 and "operator" not in name:
+            elif kind == "function" and is_outer(name) and "operator" not in name:
                 arguments = member.findtext("argsstring") or ""
                 found.append(f"```{{doxygenfunction}} {name}{arguments}\n```\n")
         return found
 
     def text(self) -> str:
-        parts = ["# C++ reference\n\nThe library `vat_core` (`find_package(vat COMPONENTS core)`), "
-                 "and the readers of scenes and frames.\n"]
+        parts = ["# C++ reference\n\nThe library of the physics (`find_package(vat COMPONENTS core)`), "
+                 "the readers of scenes and frames, and the client library (`COMPONENTS client`).\n"]
         for header in HEADERS:
             parts.append(f"## {header}\n")
             parts += self.directives(header)
