@@ -93,7 +93,7 @@ class Exchange {
   std::string resume_;                  ///< token of the participant
   std::optional<std::string> session_;  ///< id of the joined session
   Json join_params_;
-  Json subscription_;  ///< params of the subscription; null: there is none
+  Json subscription_;  ///< params of the subscription; null if the client has no subscription
 };
 
 }  // namespace vat::client

@@ -2,9 +2,13 @@
 
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <functional>
 #include <string>
+#include <string_view>
 #include <utility>
 
+#include "core/support/nearest_name.h"
 #include "protocol/python/native/bindings.h"
 #include "protocol/scene/scene_json.h"
 
@@ -44,12 +48,14 @@ Status move_body(Simulation& simulation, BodyId id, py::object center, py::objec
 }
 
 Status set_numerics(Simulation& simulation, std::string name, Real step) {
-  for (std::size_t i = 0; i < kNamesOf<IntegratorId>.size(); ++i) {
-    if (name == kNamesOf<IntegratorId>[i]) {
-      return simulation.set_numerics(static_cast<IntegratorId>(i), step);
-    }
+  const auto found = std::ranges::find(kNamesOf<IntegratorId>, std::string_view(name));
+  if (found == kNamesOf<IntegratorId>.end()) {
+    std::string rule = "must be one of";
+    for (const char* known : kNamesOf<IntegratorId>) rule += std::string(" ") + known;
+    return unknown_name({}, "/integrator", rule, name, kNamesOf<IntegratorId>, std::identity());
   }
-  return Error{"unknown_name", "/integrator", "no integrator has the name '" + name + "'"};
+  return simulation.set_numerics(static_cast<IntegratorId>(found - kNamesOf<IntegratorId>.begin()),
+                                 step);
 }
 
 /// Starts a grab with an unused number above `after`. Returns the number.

@@ -1,7 +1,11 @@
 #include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
 
+#include <functional>
 #include <string>
+#include <vector>
 
+#include "core/support/nearest_name.h"
 #include "protocol/python/native/bindings.h"
 #include "protocol/scene/level.h"
 #include "protocol/scene/scene_json.h"
@@ -27,6 +31,14 @@ void bind_scenes(py::module_& module) {
     return write_scene(value_of(read_scene_file(path))).dump();
   });
   module.def("at_level", &at_level_text);
+  module.def("refuse_unknown_scene",
+             [](const std::string& name, const std::vector<std::string>& names) {
+               std::string message = "the catalogue has no scene '" + name + "'; it has";
+               for (const std::string& other : names) message += ' ' + other;
+               NearestName nearest(name);
+               nearest.consider_all(names, std::identity());
+               raise({with_suggestion({"unknown_scene", "", message}, nearest.suggestion())});
+             });
 }
 
 }  // namespace vat::python

@@ -1,4 +1,4 @@
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,6 +7,7 @@ Numbers = NDArray[np.float64]
 
 def read_scene_file(path: str) -> str: ...
 def at_level(text: str, folder: str, level: str) -> str: ...
+def refuse_unknown_scene(name: str, names: list[str]) -> NoReturn: ...
 def frame_number(frame: bytes) -> int: ...
 
 class FrameDecoder:

@@ -9,12 +9,11 @@ class Fault:
 
     code: str
     path: str  #: JSON pointer, such as "/bodies/3/radius"; empty: the whole input
-    message: str  #: names the permitted range
+    message: str  #: names the permitted range and the suggestion
     suggestion: str = ""  #: valid name near to the given one, or empty
 
     def __str__(self) -> str:
-        text = f"{self.path}: {self.message}" if self.path else self.message
-        return f"{text}; did you mean '{self.suggestion}'?" if self.suggestion else text
+        return f"{self.path}: {self.message}" if self.path else self.message
 
 
 class InputError(ValueError):

@@ -1,6 +1,5 @@
 """Scenes: dictionaries in the format of a scene file (protocol/SCENE.md)."""
 
-import difflib
 import json
 import os
 from collections.abc import Mapping
@@ -8,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from vat import _native
-from vat.errors import InputError
 
 #: A scene, its file, or its name in the catalogue.
 SceneSource = Mapping[str, Any] | str | os.PathLike[str]
@@ -46,6 +44,4 @@ def catalogue_file(name: str) -> Path:
     names = scene_names()
     if name in names:
         return FOLDER / f"{name}.json"
-    nearest = difflib.get_close_matches(name, names, 1)
-    message = f"the catalogue has no scene '{name}'; it has {' '.join(names)}"
-    raise InputError([("unknown_scene", "", message, "".join(nearest))])
+    _native.refuse_unknown_scene(name, names)
