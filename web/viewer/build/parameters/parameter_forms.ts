@@ -1,4 +1,4 @@
-import type { MethodName, Params, Scene, SessionDescription } from '../../../client/index';
+import type { MethodName, Params, SessionDescription } from '../../../client/index';
 import { element } from '../../panel/elements';
 import { attempt } from '../../panel/desk';
 import type { Desk } from '../../panel/desk';
@@ -15,7 +15,6 @@ export class ParameterForms {
     this.change('world.set_material', params),
   );
   private readonly forms: readonly ParameterForm[];
-  private initial: Scene | undefined;
   private isEnabled = false;
 
   constructor(
@@ -38,7 +37,7 @@ export class ParameterForms {
 
   /** `isNew`: another scene or session, or an earlier time of the same. */
   describe(description: SessionDescription, isNew: boolean): void {
-    if (isNew) this.initial = undefined;
+    if (isNew) this.document.restart();
     this.materials.describe(description.materials);
     void this.look();
   }
@@ -46,17 +45,9 @@ export class ParameterForms {
   /** Requests the scene if the section is open. */
   private async look(): Promise<void> {
     if (!this.section.open || !this.isEnabled) return;
-    const scene = await this.document.get();
-    if (!scene) return;
-    this.initial ??= await this.asLoaded(scene);
-    for (const form of this.forms) form.show(scene, this.initial);
-  }
-
-  private async asLoaded(present: Scene): Promise<Scene> {
-    return this.desk.request('scene.get', {}).then(
-      ({ scene }) => scene,
-      () => present, // a scene that exceeds a message has no reset
-    );
+    const [scene, initial] = await Promise.all([this.document.get(), this.document.asLoaded()]);
+    if (!scene || !initial) return;
+    for (const form of this.forms) form.show(scene, initial);
   }
 
   private async change<M extends MethodName>(
