@@ -34,17 +34,20 @@ Result<std::unique_ptr<FrameWriter>> create_npz_writer(const std::string& name,
 
 /// Returns a writer of one binary glTF file, in single precision. Rigid bodies are meshes whose
 /// translation and rotation are animated. The particles of liquids and deformable bodies are points
-/// with one mesh for each of at most 120 key frames, and at most 20 million points in all. Colours
-/// are those of the materials. The writer keeps the content in memory until finish(). Creates the
+/// with one mesh for each of at most 120 key frames, and at most 20 million points in all. With
+/// liquid surfaces, the key frames contain the surface of each liquid material instead of its
+/// particles. Colours are those of the materials. The writer keeps the content in memory until finish(). Creates the
 /// file, and returns an error if the creation fails.
 Result<std::unique_ptr<FrameWriter>> create_glb_writer(const std::string& name,
-                                                       std::size_t frame_count);
+                                                       const FrameContent& content);
 
 /// Returns a writer of an Alembic archive (Ogawa) in single precision, below an object that turns
 /// the z axis upwards. Particles of liquids and deformable bodies are points with velocities, ids
-/// (numbers in the body) and one width. Rigid bodies are transformations with a mesh. Creates the
-/// file, and returns an error if the creation fails.
-Result<std::unique_ptr<FrameWriter>> create_abc_writer(const std::string& name);
+/// (numbers in the body) and one width. Rigid bodies are transformations with a mesh. With liquid
+/// surfaces, each liquid material also has a mesh that changes with time. Creates the file, and
+/// returns an error if the creation fails.
+Result<std::unique_ptr<FrameWriter>> create_abc_writer(const std::string& name,
+                                                       bool has_liquid_surfaces);
 
 /// Returns a writer of a series of binary point files for viewers. Properties in single precision:
 /// position [m], velocity [m/s], radius [m], colour by kind of body, index of the body in the

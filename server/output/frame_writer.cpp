@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "core/support/check.h"
 #include "server/output/frame_formats.h"
 
 namespace vat {
@@ -21,16 +22,22 @@ bool is_frame_file_name(const std::string& name) {
          ending == ".npz" || ending == ".glb" || ending == ".abc";
 }
 
+bool can_have_surfaces(const std::string& name) {
+  const std::string ending = ending_of(name);
+  return ending == ".glb" || ending == ".abc";
+}
+
 Result<std::unique_ptr<FrameWriter>> create_frame_writer(const std::string& name,
-                                                         std::size_t frame_count) {
+                                                         const FrameContent& content) {
+  VAT_CHECK(!content.has_liquid_surfaces || can_have_surfaces(name));
   const std::string ending = ending_of(name);
   if (ending == ".csv") return create_csv_writer(name);
   if (ending == ".npy") return create_npy_writer(name);
-  if (ending == ".npz") return create_npz_writer(name, frame_count);
-  if (ending == ".abc") return create_abc_writer(name);
-  if (ending == ".glb") return create_glb_writer(name, frame_count);
-  if (ending == ".pvd") return create_pvd_writer(name, frame_count);
-  if (ending == ".ply") return create_ply_writer(name, frame_count);
+  if (ending == ".npz") return create_npz_writer(name, content.frame_count);
+  if (ending == ".abc") return create_abc_writer(name, content.has_liquid_surfaces);
+  if (ending == ".glb") return create_glb_writer(name, content);
+  if (ending == ".pvd") return create_pvd_writer(name, content.frame_count);
+  if (ending == ".ply") return create_ply_writer(name, content.frame_count);
   return Error{"bad_file_name", name, std::string("must end in ") + kFrameEndings};
 }
 

@@ -21,11 +21,20 @@ class FrameWriter {
   virtual Status finish() = 0;
 };
 
+/// Content of an output.
+struct FrameContent {
+  std::size_t frame_count = 1;      ///< number of output times
+  bool has_liquid_surfaces = false;  ///< only for formats with surfaces, see can_have_surfaces()
+};
+
 /// File name extensions that create_frame_writer() supports, for error messages.
 inline constexpr const char* kFrameEndings = ".csv, .pvd, .ply, .npy, .npz, .glb or .abc";
 
 /// Returns whether the name has one of the extensions in kFrameEndings.
 bool is_frame_file_name(const std::string& name);
+
+/// Returns whether the format of the name's extension can contain the surfaces of liquids.
+bool can_have_surfaces(const std::string& name);
 
 /// Returns a writer for the file name's extension, which must be known:
 /// - `.csv`: one row per particle and time, with a header row.
@@ -35,10 +44,8 @@ bool is_frame_file_name(const std::string& name);
 /// - `.npz`: arrays by name; the number of particles may change.
 /// - `.glb`: glTF with animation, for viewers of pictures.
 /// - `.abc`: Alembic, for programs of animation.
-///
-/// `frame_count` is the number of output times.
 Result<std::unique_ptr<FrameWriter>> create_frame_writer(const std::string& name,
-                                                         std::size_t frame_count);
+                                                         const FrameContent& content);
 
 /// Returns the name of one file of a series: "run-0000.ply" for "run.ply" and index 0. A series of
 /// one file uses `name`.

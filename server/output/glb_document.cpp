@@ -122,10 +122,14 @@ std::size_t GlbDocument::add_material(const std::string& name, const Colour& col
 }
 
 std::size_t GlbDocument::add_mesh(const SurfaceMesh& surface, std::size_t material) {
+  return add_mesh(json::array({triangles_of(surface, material)}));
+}
+
+json GlbDocument::triangles_of(const SurfaceMesh& surface, std::size_t material) {
   const std::size_t positions = add_positions(surface.vertices);
-  return add_mesh(json::array({{{"attributes", {{"POSITION", positions}}},
-                                {"indices", add_indices(surface.triangles)},
-                                {"material", material}}}));
+  return {{"attributes", {{"POSITION", positions}}},
+          {"indices", add_indices(surface.triangles)},
+          {"material", material}};
 }
 
 std::size_t GlbDocument::add_mesh(json primitives) {

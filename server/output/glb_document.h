@@ -10,7 +10,7 @@
 
 #include "core/scene/appearance.h"
 #include "core/types.h"
-#include "server/output/shape_mesh.h"
+#include "server/output/mesh/shape_mesh.h"
 
 namespace vat {
 
@@ -29,7 +29,9 @@ class GlbDocument {
   std::size_t add_material(const std::string& name, const Colour& colour, Real opacity,
                            Real roughness, Real metalness);
   std::size_t add_mesh(const SurfaceMesh& surface, std::size_t material);
-  /// Adds a mesh of points or lines from a list of primitives.
+  /// Adds the data of a surface, and returns a primitive for add_mesh().
+  nlohmann::json triangles_of(const SurfaceMesh& surface, std::size_t material);
+  /// Adds a mesh from a list of primitives.
   std::size_t add_mesh(nlohmann::json primitives);
   /// Adds a child of the root node.
   std::size_t add_node(nlohmann::json node);

@@ -11,6 +11,7 @@
 #include "protocol/scene/appearance.h"
 #include "server/output/frame_formats.h"
 #include "server/output/glb_document.h"
+#include "server/output/mesh/liquid_surface.h"
 
 namespace vat {
 
@@ -57,8 +58,11 @@ json first_of(const std::vector<float>& values, std::size_t count) {
 /// frame. Only the mesh of the current key frame has a scale other than 0.
 class GlbWriter final : public FrameWriter {
  public:
-  GlbWriter(OutputFile file, std::string name, std::size_t frame_count)
-      : file_(std::move(file)), name_(std::move(name)), frame_count_(frame_count) {}
+  GlbWriter(OutputFile file, std::string name, const FrameContent& content)
+      : file_(std::move(file)),
+        name_(std::move(name)),
+        frame_count_(content.frame_count),
+        has_surfaces_(content.has_liquid_surfaces) {}
   ~GlbWriter() override {
     // The run has already reported its error.
     if (!is_complete_ && !times_.empty()) static_cast<void>(write_document());
@@ -147,16 +151,23 @@ class GlbWriter final : public FrameWriter {
     for (const auto& [index, node] : rigid_nodes_) poses_[index].add(*bodies[index].pose);
   }
 
-  /// Adds the particles of liquids and deformable bodies, with one primitive per material.
+  /// Adds the particles of liquids and deformable bodies, with one primitive per material. Adds
+  /// surfaces instead of the particles of liquids if the output has surfaces.
   void add_key_frame(const Simulation& simulation, const std::vector<BodyView>& bodies) {
     json primitives = json::array();
     for (const auto& [name, material] : materials_) {
       std::vector<Vec3> positions;
       for (const BodyView& body : bodies) {
-        if (body.kind == BodyKind::rigid || body.material != name) continue;
+        const bool is_surface = has_surfaces_ && body.kind == BodyKind::liquid;
+        if (body.kind == BodyKind::rigid || body.material != name || is_surface) continue;
         positions.insert(positions.end(), body.positions.begin(), body.positions.end());
       }
       if (!positions.empty()) primitives.push_back(points_of(positions, material));
+      if (!has_surfaces_) continue;
+      const SurfaceMesh surface = liquid_surface(bodies, name);
+      if (!surface.triangles.empty()) {
+        primitives.push_back(document_.triangles_of(surface, material));
+      }
     }
     std::string name = "particles at ";
     append_number(name, simulation.time());
@@ -232,6 +243,7 @@ class GlbWriter final : public FrameWriter {
   OutputFile file_;
   std::string name_;
   std::size_t frame_count_;
+  bool has_surfaces_;
   GlbDocument document_;
   std::map<std::string, std::size_t> materials_;  ///< by their names
   std::map<std::size_t, json> rigid_nodes_;       ///< by the indices of the bodies
@@ -249,11 +261,11 @@ class GlbWriter final : public FrameWriter {
 }  // namespace
 
 Result<std::unique_ptr<FrameWriter>> create_glb_writer(const std::string& name,
-                                                       std::size_t frame_count) {
+                                                       const FrameContent& content) {
   Result<OutputFile> file = OutputFile::create(name);
   if (!file) return file.errors();
   return std::unique_ptr<FrameWriter>(
-      std::make_unique<GlbWriter>(std::move(file).value(), name, frame_count));
+      std::make_unique<GlbWriter>(std::move(file).value(), name, content));
 }
 
 }  // namespace vat

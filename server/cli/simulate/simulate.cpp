@@ -46,8 +46,9 @@ constexpr const char* kSimulateFooter = R"(Output files
   .npz   arrays for numpy.load: time, count of particles, body, number in the body, position,
          velocity. Missing particles are -1 and NaN
   .glb   glTF: animated meshes of rigid bodies, and points of the other particles at up to 120
-         key frames
-  .abc   Alembic: points with velocities and ids, and rigid bodies as transformations with meshes
+         key frames. With --surface: surfaces of liquids instead of their points
+  .abc   Alembic: points with velocities and ids, and rigid bodies as transformations with meshes.
+         With --surface: also a mesh per liquid material
 Particles are in the order of the scene's bodies. Numbers in text have all digits that
 an exact copy needs. All units are SI.
 
@@ -102,6 +103,7 @@ struct SimulateOptions {
   DeviceChoice device;
   std::string output;
   std::string diagnostics;
+  bool surface = false;
   bool plan = false;
   bool profile = false;
   bool hash = false;
@@ -135,7 +137,7 @@ Result<Writers> create_writers(const SimulateOptions& options, const Schedule& s
                                const Simulation& simulation) {
   Writers writers;
   if (!options.output.empty()) {
-    auto frames = create_frame_writer(options.output, schedule.output_count());
+    auto frames = create_frame_writer(options.output, {schedule.output_count(), options.surface});
     if (!frames) return frames.errors();
     writers.frames = std::move(frames).value();
   }
@@ -310,6 +312,8 @@ void add_simulate_options(CLI::App& command, SimulateOptions& options) {
       .add_option("--output", options.output,
                   std::string("File for the particles: ") + kFrameEndings)
       ->check(CLI::Validator(check_frame_file_name, "FILE"));
+  command.add_flag("--surface", options.surface,
+                   "Write the surfaces of liquids to the output, which ends in .glb or .abc");
   command.add_option("--diagnostics", options.diagnostics, "File for the diagnostics: .csv")
       ->check(csv_file_name());
   command.add_flag("--plan", options.plan,
@@ -321,6 +325,9 @@ void add_simulate_options(CLI::App& command, SimulateOptions& options) {
 
 void check_together(const SimulateOptions& options) {
   namespace fs = std::filesystem;
+  if (options.surface && !can_have_surfaces(options.output)) {
+    throw CLI::ValidationError("--surface", "needs an --output that ends in .glb or .abc");
+  }
   if (options.output.empty() || options.diagnostics.empty()) return;
   const auto place = [](const std::string& name) {
     return fs::weakly_canonical(fs::absolute(name));

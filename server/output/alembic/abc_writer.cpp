@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <functional>
+#include <map>
 #include <set>
 #include <span>
 #include <utility>
@@ -7,7 +9,8 @@
 #include "server/output/alembic/abc_archive.h"
 #include "server/output/bytes.h"
 #include "server/output/frame_formats.h"
-#include "server/output/shape_mesh.h"
+#include "server/output/mesh/liquid_surface.h"
+#include "server/output/mesh/shape_mesh.h"
 
 namespace vat {
 
@@ -55,14 +58,17 @@ AbcProperty bounds_property(bool is_timed) {
   return {".selfBnds", "interpretation=box", AbcType::float64, 6, false, is_timed};
 }
 
-/// Indices of the properties in an object of points.
-enum PointsProperty : std::size_t { kBounds, kPositions, kIds, kVelocities, kWidths };
+/// Indices of the properties in an object of points or of a mesh.
+enum Property : std::size_t { kBounds, kPositions };
+enum PointsProperty : std::size_t { kIds = 2, kVelocities, kWidths };
+enum MeshProperty : std::size_t { kFaceIndices = 2, kFaceCounts };
 
-/// Writes particles as points with velocities and ids, and rigid bodies as transformations with a
-/// mesh.
+/// Writes particles as points with velocities and ids, rigid bodies as transformations with a mesh,
+/// and surfaces of liquids as meshes.
 class AbcWriter final : public FrameWriter {
  public:
-  explicit AbcWriter(OgawaFile file) : archive_(std::move(file)) {}
+  AbcWriter(OgawaFile file, bool has_surfaces)
+      : archive_(std::move(file)), has_surfaces_(has_surfaces) {}
   ~AbcWriter() override {
     // The run has already reported its error.
     if (!is_complete_ && !archive_.times.empty()) static_cast<void>(archive_.complete());
@@ -78,6 +84,9 @@ class AbcWriter final : public FrameWriter {
       } else {
         add_points(*objects_[i], bodies[i]);
       }
+    }
+    for (const auto& [material, object] : surfaces_) {
+      add_surface(*object, liquid_surface(bodies, material));
     }
     return archive_.status();
   }
@@ -106,6 +115,16 @@ class AbcWriter final : public FrameWriter {
       }
       make_xform(object, name, true);
       add_shape(object, bodies[i], simulation.scene().bodies[i].shape);
+    }
+    if (has_surfaces_) start_surfaces(root, bodies);
+  }
+
+  void start_surfaces(AbcObject& root, const std::vector<BodyView>& bodies) {
+    for (const BodyView& body : bodies) {
+      if (body.kind != BodyKind::liquid || surfaces_.contains(body.material)) continue;
+      AbcObject& object = root.children.emplace_back();
+      make_mesh(object, unique_name(std::string(body.material) + " surface"), true);
+      surfaces_.emplace(body.material, &object);
     }
   }
 
@@ -167,13 +186,23 @@ class AbcWriter final : public FrameWriter {
       return;
     }
     for (Vec3& vertex : surface.vertices) vertex += body.shape_origin;
-    child.name = "shape";
-    child.schema = kPolyMesh;
-    child.compound = ".geom";
-    add_constant(child, bounds_property(false), bounds_of(surface.vertices));
-    add_constant(child,
-                 {"P", "geoScope=vtx;interpretation=point", AbcType::float32, 3, true, false},
-                 floats_of(surface.vertices));
+    make_mesh(child, "shape", false);
+    add_surface(child, surface);
+  }
+
+  static void make_mesh(AbcObject& object, const std::string& name, bool is_timed) {
+    object.name = name;
+    object.schema = kPolyMesh;
+    object.compound = ".geom";
+    object.properties.push_back(bounds_property(is_timed));
+    object.properties.push_back(
+        {"P", "geoScope=vtx;interpretation=point", AbcType::float32, 3, true, is_timed});
+    object.properties.push_back({".faceIndices", "", AbcType::int32, 1, true, is_timed});
+    object.properties.push_back({".faceCounts", "", AbcType::int32, 1, true, is_timed});
+  }
+
+  void add_surface(AbcObject& object, const SurfaceMesh& surface) {
+    add_positions(object, surface.vertices);
     std::string indices;
     std::string counts;
     for (const auto& [a, b, c] : surface.triangles) {
@@ -182,8 +211,8 @@ class AbcWriter final : public FrameWriter {
       }
       append_bytes(counts, std::int32_t{3});
     }
-    add_constant(child, {".faceIndices", "", AbcType::int32, 1, true, false}, indices);
-    add_constant(child, {".faceCounts", "", AbcType::int32, 1, true, false}, counts);
+    archive_.add_sample(object.properties[kFaceIndices], indices);
+    archive_.add_sample(object.properties[kFaceCounts], counts);
   }
 
   void add_pose(AbcObject& object, const RigidPose& pose) {
@@ -217,16 +246,19 @@ class AbcWriter final : public FrameWriter {
 
   AbcArchive archive_;
   std::vector<AbcObject*> objects_;  ///< by the indices of the bodies
+  std::map<std::string, AbcObject*, std::less<>> surfaces_;  ///< by the names of materials
   std::set<std::string> names_;
+  bool has_surfaces_;
   bool is_complete_ = false;
 };
 
 }  // namespace
 
-Result<std::unique_ptr<FrameWriter>> create_abc_writer(const std::string& name) {
+Result<std::unique_ptr<FrameWriter>> create_abc_writer(const std::string& name,
+                                                       bool has_liquid_surfaces) {
   Result<OgawaFile> file = OgawaFile::create(name);
   if (!file) return file.errors();
-  return std::unique_ptr<FrameWriter>(std::make_unique<AbcWriter>(std::move(file).value()));
+  return std::unique_ptr<FrameWriter>(std::make_unique<AbcWriter>(std::move(file).value(), has_liquid_surfaces));
 }
 
 }  // namespace vat

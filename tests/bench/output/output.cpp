@@ -73,7 +73,7 @@ OutputCost measure_format(Simulation& simulation, const std::string& ending, std
                           const fs::path& folder) {
   fs::remove_all(folder);
   fs::create_directories(folder);
-  auto writer = create_frame_writer((folder / ("run" + ending)).string(), outputs);
+  auto writer = create_frame_writer((folder / ("run" + ending)).string(), {outputs, false});
   if (!writer) throw std::runtime_error(writer.errors().front().message);
   std::vector<double> times;
   for (std::size_t i = 0; i < outputs; ++i) {

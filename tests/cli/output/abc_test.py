@@ -41,7 +41,8 @@ class AbcTest(unittest.TestCase):
         """Returns the objects of the bodies, the rows of the particles, and the archive."""
         archive = abc_reader.Archive(self.run_vat(scene, "run.abc", *options))
         self.assertEqual(list(archive.objects), ["vat"])
-        return archive.objects["vat"], self.rows(self.run_vat(scene, "run.csv", *options)), archive
+        tables = [option for option in options if option != "--surface"]
+        return archive.objects["vat"], self.rows(self.run_vat(scene, "run.csv", *tables)), archive
 
     def compare_points(self, points, rows, times):
         self.assertEqual(points.meta["schema"], "AbcGeom_Points_v1")
@@ -105,6 +106,27 @@ class AbcTest(unittest.TestCase):
             a, b, c = corners.astype("f8").transpose(1, 0, 2)
             self.assertLess(numpy.einsum("ij,ij->", a, numpy.cross(b, c)), 0)
             numpy.testing.assert_allclose(numpy.cross(b - a, c - a).sum(axis=0), 0, atol=1e-6)
+
+    def test_liquid_surfaces_are_closed_and_enclose_the_particles(self):
+        root, rows, _ = self.bodies(f"{CATALOGUE}/pour.json", "--until", "0.4", "--every", "0.2",
+                                    "--surface")
+        mesh = root.objects["water surface"].properties
+        self.assertEqual(root.objects["water surface"].meta["schema"], "AbcGeom_PolyMesh_v1")
+        times = tuple(dict.fromkeys(float(row["time"]) for row in rows))
+        self.assertEqual(mesh["P"].times, times)
+        radius = root.objects["water"].properties[".widths"].samples[0][0] / 2
+        for i, time in enumerate(times):
+            points = columns([row for row in rows if float(row["time"]) == time
+                              and row["body"] == "water"], "xyz")
+            positions = mesh["P"].samples[i].astype("f8")
+            faces = mesh[".faceIndices"].samples[i].reshape(-1, 3)
+            self.assertTrue((mesh[".faceCounts"].samples[i] == 3).all())
+            edges = numpy.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+            self.assertEqual(sorted(map(tuple, edges)), sorted(map(tuple, edges[:, ::-1])))
+            # The surface is at most 1.3 radii and half a cell of its grid beyond the particles.
+            for sign in (1, -1):
+                beyond = (sign * positions).max(axis=0) - (sign * points).max(axis=0)
+                self.assertTrue((beyond > 0).all() and (beyond < 1.8 * radius).all(), beyond)
 
     def test_samples_are_identified_by_their_content(self):
         file = self.run_vat(f"{SCENES}/mixed.json", "run.abc", "--until", "0.1")

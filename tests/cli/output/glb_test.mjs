@@ -151,3 +151,28 @@ test('one output has no animation', async () => {
   await expectValid(bytes);
   assert.equal(json.animations, undefined);
 });
+
+test('surfaces replace the points of liquids', async () => {
+  simulate(`${scenes}/mixed.json`, 'surface.glb', '--until', '0.04', '--every', '0.02', '--surface');
+  const { bytes, json, accessor } = read('surface.glb');
+  await expectValid(bytes);
+  simulate(`${scenes}/mixed.json`, 'surface.csv', '--until', '0.04', '--every', '0.02');
+  const frames = rowsByTime('surface.csv');
+  const keys = json.nodes.filter(({ name }) => name?.startsWith('particles at'));
+  assert.equal(keys.length, frames.length);
+  keys.forEach(({ mesh }, k) => {
+    const points = [];
+    const corners = [];
+    for (const { attributes, indices, mode } of json.meshes[mesh].primitives) {
+      const positions = accessor(attributes.POSITION);
+      if (mode === 0) points.push(...positions);
+      else corners.push(...accessor(indices).map(([i]) => positions[i]));
+    }
+    const kind = (name) => frames[k].filter((row) => row[1] === name);
+    assert.equal(points.length, kind('deformable').length);
+    assert.ok(corners.length > 100);
+    const highest = (list, z) => Math.max(...list.map((row) => row[z]));
+    const beyond = highest(corners, 2) - highest(kind('liquid').map((row) => row.map(Number)), 5);
+    assert.ok(beyond > 0 && beyond < 1.8 * 0.025, `${beyond}`); // radius 0.025 m
+  });
+});

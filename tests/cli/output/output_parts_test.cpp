@@ -3,12 +3,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "core/sampling/mesh.h"
 #include "server/output/crc32.h"
-#include "server/output/shape_mesh.h"
+#include "server/output/mesh/liquid_surface.h"
+#include "server/output/mesh/shape_mesh.h"
 
 namespace vat::test::output_parts_test {
 namespace {
@@ -62,6 +66,70 @@ TEST(OutputParts, CylinderHasItsAxis) {
   Vec3 greatest = Vec3::Zero();
   for (const Vec3& vertex : mesh.vertices) greatest = greatest.cwiseMax(vertex.cwiseAbs());
   EXPECT_LT((greatest - Vec3(0.5, 1, 0.5)).norm(), 1e-12);
+}
+
+/// Cubic lattice with the given number of particles per axis and the spacing 1, whose cells begin
+/// at `min`.
+std::vector<Vec3> lattice(const Vec3& min, const std::array<int, 3>& counts) {
+  std::vector<Vec3> positions;
+  for (int x = 0; x < counts[0]; ++x) {
+    for (int y = 0; y < counts[1]; ++y) {
+      for (int z = 0; z < counts[2]; ++z) positions.emplace_back(min + Vec3(x, y, z));
+    }
+  }
+  for (Vec3& position : positions) position.array() += 0.5;
+  return positions;
+}
+
+MeshShape liquid_mesh(const std::vector<Vec3>& positions) {
+  const std::vector<Real> radii(positions.size(), 0.5);
+  SurfaceMesh surface = liquid_surface(positions, radii);
+  return {"", surface.vertices, surface.triangles};
+}
+
+// The sides may deviate by a tenth of the grid's cell. The edges are rounded within one spacing. A
+// rounded edge of length 1 lacks (1 - pi / 4) times the square of its radius.
+TEST(OutputParts, LiquidSurfaceEnclosesTheCellsOfTheParticles) {
+  const Vec3 min(-7.3, -3.1, 2.6);
+  const std::array<int, 3> counts = {20, 9, 5};
+  const MeshShape mesh = liquid_mesh(lattice(min, counts));
+  EXPECT_TRUE(is_closed(mesh));
+  Vec3 least = mesh.vertices.front();
+  Vec3 greatest = least;
+  for (const Vec3& vertex : mesh.vertices) {
+    least = least.cwiseMin(vertex);
+    greatest = greatest.cwiseMax(vertex);
+  }
+  const Vec3 size(counts[0], counts[1], counts[2]);
+  EXPECT_LT((least - min).cwiseAbs().maxCoeff(), 0.05);
+  EXPECT_LT((greatest - min - size).cwiseAbs().maxCoeff(), 0.05);
+  const Real round = (1 - std::numbers::pi / 4) * 4 * size.sum();
+  EXPECT_LT(mesh_volume(mesh), size.prod() + 0.05 * 2 * (180 + 100 + 45));
+  EXPECT_GT(mesh_volume(mesh), size.prod() - 0.05 * 2 * (180 + 100 + 45) - round);
+}
+
+TEST(OutputParts, LiquidSurfacesAreSeparateAcrossAGap) {
+  std::vector<Vec3> positions = lattice({0, 0, 0}, {12, 12, 4});
+  const std::vector<Vec3> upper = lattice({0, 0, 6}, {12, 12, 4});
+  positions.insert(positions.end(), upper.begin(), upper.end());
+  const MeshShape mesh = liquid_mesh(positions);
+  EXPECT_TRUE(is_closed(mesh));
+  EXPECT_TRUE(std::ranges::none_of(
+      mesh.vertices, [](const Vec3& vertex) { return vertex.z() > 4.25 && vertex.z() < 5.75; }));
+}
+
+TEST(OutputParts, IsolatedParticlesHaveARoundSurface) {
+  const Vec3 center(0.2, -17.4, 3.9);
+  const MeshShape mesh = liquid_mesh({center, {40, 0, 0}});
+  EXPECT_TRUE(is_closed(mesh));
+  std::size_t own = 0;
+  for (const Vec3& vertex : mesh.vertices) {
+    if ((vertex - center).norm() > 2) continue;
+    ++own;
+    EXPECT_NEAR((vertex - center).norm(), 0.64, 0.25);  // half a cell of the grid
+  }
+  EXPECT_GE(own, 8u);
+  EXPECT_TRUE(liquid_mesh({}).vertices.empty());
 }
 
 }  // namespace

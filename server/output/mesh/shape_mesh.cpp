@@ -1,4 +1,4 @@
-#include "server/output/shape_mesh.h"
+#include "server/output/mesh/shape_mesh.h"
 
 #include <cmath>
 #include <numbers>
