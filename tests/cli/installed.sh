@@ -53,6 +53,10 @@ watch "$work/linked"
 shown=$(sed -n '/^```cpp$/,/^```$/{/^```/d;p}' "$sources/protocol/client/README.md")
 [[ -n $shown && $(<"$sources/tests/cli/library/watcher.cpp") == *"$shown"* ]] ||
   fail "protocol/client/README.md shows another program than watcher.cpp"
+while read -r line; do
+  grep -qxF "$line" "$sources/tests/cli/library/CMakeLists.txt" ||
+    fail "docker/debian/README.md shows another line than tests/cli/library/CMakeLists.txt: $line"
+done < <(sed -n '/^```cmake$/,/^```$/{/^```/d;p}' "$sources/docker/debian/README.md")
 
 # shellcheck source=/dev/null
 source "$work/moved/share/bash-completion/completions/vat"
