@@ -68,3 +68,12 @@ complete_words() {
 }
 expect 'completion of a scene' 'dam-break ' "$(complete_words simulate dam)"
 expect 'completion of a command' 'serve ' "$(complete_words se)"
+# complete_in_zsh WORD...: the same with the function for zsh, whose builtins are replaced.
+complete_in_zsh() {
+  zsh -f -c 'compadd() { print -rn -- "${(P)2} " }; _files() { print -rn files }
+    completion=$1; shift; words=("$@"); CURRENT=$#; source "$completion"' \
+    zsh "$work/moved/share/zsh/vendor-completions/_vat" "$vat" "$@"
+}
+expect 'completion of a scene in zsh' 'dam-break ' "$(complete_in_zsh simulate dam)"
+expect 'completion of an option in zsh' '--level ' "$(complete_in_zsh simulate dam-break --le)"
+expect 'completion of a file in zsh' 'files' "$(complete_in_zsh validate ./x)"
