@@ -66,6 +66,8 @@ def python_reference() -> str:
     parts = ["# Python reference\n\nThe package `vat` exports the public names of these modules.\n"]
     parts += [f"## vat.{name}\n\n```{{eval-rst}}\n.. automodule:: vat.{name}\n```\n"
               for name in modules]
+    parts.append("## Others\n\n```{eval-rst}\n.. autoexception:: vat.Closed\n\n"
+                 ".. autofunction:: vat.frame_number\n```\n")
     return "\n".join(parts)
 
 
