@@ -4,11 +4,13 @@
 #include <string>
 
 #include "core/device/opencl/devices.h"
+#include "core/support/check.h"
 
 namespace vat {
 
 Result<DeviceChoice> parse_device(std::string_view text) {
   if (text == "cpu") return DeviceChoice{};
+  if (text == "auto") return DeviceChoice{.is_auto = true};
   const Error bad{"bad_value", "/device",
                   "'" + std::string(text) + "' must be " + std::string(kDeviceForm)};
   constexpr std::string_view kOpenCl = "opencl";
@@ -28,6 +30,7 @@ Result<DeviceChoice> parse_device(std::string_view text) {
 }
 
 Result<std::unique_ptr<StepEngine>> make_engine(const DeviceChoice& choice) {
+  VAT_CHECK(!choice.is_auto);
   if (choice.is_cpu) return std::unique_ptr<StepEngine>();
   const Result<opencl::Device> device = opencl::find_device(choice.index);
   if (!device) return device.errors();

@@ -35,6 +35,34 @@ TEST(DeviceCommand, SimulatesOnADevice) {
   }
 }
 
+// PoCL takes several times as long as the CPU's own path. A scene with solids has no device.
+TEST(DeviceCommand, KeepsScenesThatAreFasterThereOnTheCpu) {
+  for (const std::string& scene : {kDamBreak, test_scene("mixed")}) {
+    const auto hash = [&](const std::string& device) {
+      const ProgramResult result =
+          run_vat({"simulate", scene, "--until", "0.02", "--hash", "--device", device});
+      EXPECT_EQ(result.exit_code, 0) << result.err;
+      return result.out;
+    };
+    EXPECT_EQ(hash("auto"), hash("cpu"));
+  }
+}
+
+TEST(DeviceCommand, RecordsOnADevice) {
+  const TemporaryFolder folder;
+  const auto record = [&](const std::string& device) {
+    return run_vat({"record", kDamBreak, "--until", "0.04", "--output", folder.file("a.vatrec"),
+                    "--device", device});
+  };
+  const ProgramResult result = record("opencl:0");
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.err, HasSubstr("a.vatrec: 3 frames"));
+  const ProgramResult refused = record("opencl:99");
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("/device: opencl:99 does not exist"));
+  EXPECT_THAT(folder.names(), testing::ElementsAre("a.vatrec"));
+}
+
 TEST(DeviceCommand, RefusesDevicesAndScenes) {
   struct Case {
     std::string scene;

@@ -11,15 +11,16 @@
 
 #include "core/limits.h"
 #include "core/numerics/choose_numerics.h"
+#include "core/threads/thread_pool.h"
 #include "core/validation/validate.h"
 #include "protocol/scene/scene_json.h"
 #include "server/cli/common/command.h"
 #include "server/cli/common/data_folders.h"
+#include "server/cli/common/device_use.h"
 #include "server/cli/common/option_checks.h"
 #include "server/cli/common/scene_argument.h"
 #include "server/cli/record/record_run.h"
 #include "server/cli/simulate/simulate_schedule.h"
-#include "core/threads/thread_pool.h"
 
 namespace vat {
 namespace {
@@ -52,6 +53,7 @@ struct RecordOptions {
   std::size_t threads =
       std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, kMaxRecordThreads);
   InstructionSet instructions = best_instruction_set();
+  DeviceChoice device;
   bool resume = false;
 };
 
@@ -60,6 +62,9 @@ RecordingOrder order_of(const RecordOptions& options, const Scene& scene,
   RecordingOrder order;
   order.program = VAT_VERSION;
   order.instruction_set = to_string(options.instructions);
+  if (!options.device.is_cpu) {
+    order.instruction_set += std::string(", opencl-") + to_string(options.device.arithmetic);
+  }
   order.scene = write_scene(scene).dump();
   order.frame_seconds = schedule.step * static_cast<Real>(schedule.steps_per_output);
   order.step = schedule.step;
@@ -74,7 +79,16 @@ void print_record(const RecordOptions& options, const RecordReport& report) {
             << report.totals.steps << " steps in " << report.totals.stepping.count() << " s\n";
 }
 
-int record(const RecordOptions& options) {
+/// Returns the device of the steps. An automatic choice depends on the start of the scene.
+Result<DeviceChoice> device_for(const RecordOptions& options, const Scene& scene,
+                                TaskRunner& runner) {
+  if (!options.device.is_auto) return options.device;
+  const Result<Simulation> simulation = Simulation::create(scene, &runner, options.instructions);
+  if (!simulation) return simulation.errors();
+  return choose_device(options.device, simulation.value(), runner);
+}
+
+int record(RecordOptions options) {
   Result<Scene> loaded = load_scene(options.scene, options.scenes_folder, options.level);
   if (!loaded) return fail(options.scene, loaded.errors());
   Scene& scene = loaded.value();
@@ -87,10 +101,13 @@ int record(const RecordOptions& options) {
   scene.numerics = with_step(scene.numerics, schedule.value().step);
   print_warnings(options.scene, scene);
   ThreadPoolRunner runner(options.threads);
+  const Result<DeviceChoice> device = device_for(options, scene, runner);
+  if (!device) return fail(options.scene, device.errors());
+  options.device = device.value();
   const InterruptWatch interrupt;
   const Result<RecordReport> report =
       record_scene({options.output, schedule.value(), order_of(options, scene, schedule.value()),
-                    options.resume},
+                    options.resume, options.device},
                    scene, options.instructions, runner, interrupt);
   if (!report) return fail(options.scene, report.errors());
   print_record(options, report.value());
@@ -138,6 +155,7 @@ void add_record_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   add_level_option(*command, options->level);
   add_isa_option(*command, options->instructions);
+  add_device_option(*command, options->device);
   command->add_flag("--resume", options->resume, "Continue an interrupted recording");
   command->footer(kRecordFooter);
   command->callback([options, &exit_code] { exit_code = record(*options); });

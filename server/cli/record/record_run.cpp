@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "protocol/recording/recording_file.h"
+#include "server/cli/common/device_use.h"
 #include "server/cli/simulate/simulate_progress.h"
 
 namespace vat {
@@ -30,6 +31,7 @@ Result<RecordedRun> begin_run(const RecordPlan& plan, const Scene& scene,
                               InstructionSet instructions, TaskRunner& runner) {
   Result<Simulation> simulation = Simulation::create(scene, &runner, instructions);
   if (!simulation) return simulation.errors();
+  if (Status used = use_device(plan.device, simulation.value()); !used) return used.errors();
   Result<RecordingWriter> writer = RecordingWriter::create(plan.output);
   if (!writer) return writer.errors();
   return RecordedRun{std::move(simulation).value(), FrameRecorder(recorder_settings(plan.order)),
@@ -71,6 +73,7 @@ Result<RecordedRun> resume_run(const RecordPlan& plan, InstructionSet instructio
   }
   Result<Simulation> simulation = Simulation::load(state.value().snapshot, &runner, instructions);
   if (!simulation) return simulation.errors();
+  if (Status used = use_device(plan.device, simulation.value()); !used) return used.errors();
   FrameRecorder recorder(recorder_settings(plan.order));
   if (Status read = read_last_frames(file.value(), state.value(), recorder); !read) {
     return read.errors();

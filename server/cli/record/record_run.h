@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "core/device/device_choice.h"
 #include "core/simulation/simulation.h"
 #include "core/support/result.h"
 #include "protocol/recording/frame_recorder.h"
@@ -20,6 +21,7 @@ struct RecordPlan {
   Schedule schedule;
   RecordingOrder order;
   bool resumes = false;
+  DeviceChoice device;
 };
 
 /// Result of a run.

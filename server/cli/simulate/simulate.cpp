@@ -16,6 +16,7 @@
 #include "protocol/files/text.h"
 #include "server/cli/common/command.h"
 #include "server/cli/common/data_folders.h"
+#include "server/cli/common/device_use.h"
 #include "server/cli/common/option_checks.h"
 #include "server/cli/common/scene_argument.h"
 #include "server/cli/simulate/simulate_interrupt.h"
@@ -247,12 +248,8 @@ int simulate(const SimulateOptions& options) {
   Result<Simulation> created = Simulation::create(scene.value(), &runner, options.instructions);
   if (!created) return fail(options.scene, created.errors());
   Simulation& simulation = created.value();
-  Result<std::unique_ptr<StepEngine>> engine = make_engine(options.device);
-  if (!engine) return fail(options.scene, engine.errors());
-  if (engine.value()) {
-    const Status set = simulation.set_engine(std::move(engine).value());
-    if (!set) return fail(options.scene, set.errors());
-  }
+  const Status set = use_device(choose_device(options.device, simulation, runner), simulation);
+  if (!set) return fail(options.scene, set.errors());
   if (options.plan) std::cout << simulation.plan_text();
   if (options.only_plan()) return kExitOk;
   print_warnings(options.scene, scene.value());  // of the step and integrator in use

@@ -26,6 +26,13 @@ TEST(DeviceChoice, ReadsEveryForm) {
   }
 }
 
+TEST(DeviceChoice, MayBeLeftToTheProgram) {
+  const Result<DeviceChoice> choice = parse_device("auto");
+  ASSERT_TRUE(choice.ok());
+  EXPECT_TRUE(choice.value().is_auto);
+  EXPECT_FALSE(parse_device("cpu").value().is_auto);
+}
+
 TEST(DeviceChoice, RefusesOtherTexts) {
   for (const char* text :
        {"", "gpu", "CPU", "cpu:0", "opencl:", "opencl:x", "opencl:-1", "opencl:1x", "opencl0",
