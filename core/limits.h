@@ -109,5 +109,6 @@ inline constexpr Real kMaxVolumeTolerance = 0.1;
 inline constexpr int kMinIterations = 2;      // the first iteration and one correction
 inline constexpr int kMaxIterations = 10000;  // bounds the duration of a step
 inline constexpr int kMaxStepLevel = 10;      // halvings of a step: bounds its duration
+inline constexpr std::uint32_t kMaxSubSteps = 1U << kMaxStepLevel;
 
 }  // namespace vat

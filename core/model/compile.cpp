@@ -236,9 +236,11 @@ ModelDamping find_damping(const Model& model) {
   ModelDamping damping;
   damping.any = model.is_filled;  // momentum that the transport velocity carries
   damping.own.resize(model.bodies.size());
+  damping.by_liquids.resize(model.bodies.size());
   for (const OscillatingPart& part : find_oscillating_parts(model.scene, samples_of(model))) {
     if (part.bound.rate > 0) damping.any = true;
     if (part.body) take_greatest(part, damping.own[*part.body]);
+    if (part.is_of_liquid_on_solid) take_greatest(part, damping.by_liquids[*part.body]);
   }
   return damping;
 }

@@ -228,6 +228,7 @@ void add_wet_solid(const Scene& scene, std::size_t index, const SampledBody& sam
   if (bound.omega2 == 0 && bound.rate == 0) return;
   parts.push_back({body_path(index), "it is so light that it becomes unstable in the liquid",
                    "a body in an inviscid liquid gains energy with this integrator", bound, index});
+  parts.back().is_of_liquid_on_solid = true;
 }
 
 }  // namespace
@@ -277,7 +278,8 @@ Real weight_of(const Scene& scene, const SampledBody& body) {
 }
 
 bool solves_damping(const Scene& scene) {
-  return scene.pressure_solver == PressureSolver::incompressible && scene.forces.pressure;
+  return scene.pressure_solver == PressureSolver::incompressible && scene.forces.pressure &&
+         scene.numerics.control != StepControl::local;
 }
 
 Real compressed_step_share(int dimensions) {

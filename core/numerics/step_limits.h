@@ -30,6 +30,7 @@ struct OscillatingPart {
   std::optional<std::size_t> body{};  ///< body whose springs or liquid are the part, if any
   /// Whether the integrator solves for damping, so that damping does not limit steps.
   bool damping_is_solved = false;
+  bool is_of_liquid_on_solid = false;  ///< by the forces of liquids on the solid `body`
 
   /// Returns the terms of the bound that limit steps.
   Oscillation limiting() const { return {bound.omega2, damping_is_solved ? 0 : bound.rate}; }

@@ -13,13 +13,13 @@ void describe(Archive& archive, Of<Archive, Vat>& v) {
   auto& [min, max, lid, motion, walls, hand] = v;
   archive(min, max, lid, motion, walls);
 }
-/// Describes the fields of a body except `motion` and `axle`, which follow the state; see
-/// Snapshot::to_bytes().
+/// Describes the fields of a body except `motion`, `axle` and `sub_steps`, which follow the state;
+/// see Snapshot::to_bytes().
 template <class Archive>
 void describe(Archive& archive, Of<Archive, BodyDescription>& v) {
   auto& [name, kind, material, shape, spacing, mass, radius, position, orientation, velocity,
          angular_velocity, springs, velocity_field, displacement_field, jitter, seed, release,
-         fixed, melting, motion, axle] = v;
+         fixed, melting, motion, axle, sub_steps] = v;
   archive(name, kind, material, shape, spacing, mass, radius, position, orientation, velocity,
           angular_velocity, springs, velocity_field, displacement_field, jitter, seed, release,
           fixed, melting);

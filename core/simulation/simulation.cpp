@@ -9,6 +9,7 @@
 #include "core/simulation/measure.h"
 #include "core/simulation/simulation_impl.h"
 #include "core/state/rigid_motion.h"
+#include "core/stepping/local_levels.h"
 #include "core/stepping/step_plan.h"
 #include "core/support/check.h"
 #include "core/validation/validate.h"
@@ -276,7 +277,7 @@ void SimulationImpl::copy_fields(const ModelBody& body, LiquidFields& fields) co
 }
 
 std::string Simulation::plan_text() const {
-  return to_text(impl_->all().plan);
+  return to_text(impl_->all().plan) + describe_sub_steps(impl_->all());
 }
 void Simulation::set_observer(StageObserver* observer) {
   impl_->observer = observer;

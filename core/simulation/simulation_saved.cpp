@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/limits.h"
 #include "core/model/compile.h"
 #include "core/saved/check_saved.h"
 #include "core/saved/saved_fields.h"
@@ -17,8 +18,9 @@ namespace {
 
 /// Since version 2, the state is followed by the motion of the vat by a user, which may be absent,
 /// and the appearances of the materials. Since version 3, the motions and axles of the bodies
-/// follow. Version 1 ends with the motion of the vat, if there is one.
-constexpr Seal kSeal{"vat.sim\n", 3, "a saved simulation", 1};
+/// follow, and since version 4 their sub-steps. Version 1 ends with the motion of the vat, if there
+/// is one.
+constexpr Seal kSeal{"vat.sim\n", 4, "a saved simulation", 1};
 
 /// The members of a body that its description in the bytes of a scene lacks.
 struct Guidance {
@@ -30,6 +32,17 @@ std::vector<Guidance> guidances_of(const Scene& scene) {
   std::vector<Guidance> guidances;
   for (const BodyDescription& body : scene.bodies) guidances.push_back({body.motion, body.axle});
   return guidances;
+}
+
+std::vector<std::uint32_t> sub_steps_of(const Scene& scene) {
+  std::vector<std::uint32_t> sub_steps;
+  for (const BodyDescription& body : scene.bodies) sub_steps.push_back(body.sub_steps);
+  return sub_steps;
+}
+
+bool are_sub_steps(const std::vector<std::uint32_t>& values) {
+  return std::ranges::all_of(values,
+                             [](std::uint32_t one) { return one >= 1 && one <= kMaxSubSteps; });
 }
 
 std::vector<Appearance> appearances_of(const Scene& scene) {
@@ -122,14 +135,17 @@ Status load_additions(LoadingArchive& archive, std::uint32_t version, Scene& sce
   std::optional<HandMotion> hand;
   std::vector<Appearance> appearances(scene.materials.size());
   std::vector<Guidance> guidances(scene.bodies.size());
+  std::vector<std::uint32_t> sub_steps(scene.bodies.size(), 1);
   if (version >= 2) {
     archive(hand, appearances);
     if (version >= 3) archive(guidances);
+    if (version >= 4) archive(sub_steps);
   } else if (archive.left() > 0 && scene.vat) {
     archive(hand.emplace());
   }
   if (Status status = bad_bytes(archive); !status) return status;
   if (appearances.size() != scene.materials.size() || guidances.size() != scene.bodies.size() ||
+      sub_steps.size() != scene.bodies.size() || !are_sub_steps(sub_steps) ||
       (hand && !scene.vat)) {
     return Error{"bad_value", "", "the end of the saved simulation does not fit its scene"};
   }
@@ -139,6 +155,7 @@ Status load_additions(LoadingArchive& archive, std::uint32_t version, Scene& sce
   for (std::size_t b = 0; b < guidances.size(); ++b) {
     scene.bodies[b].motion = guidances[b].motion;
     scene.bodies[b].axle = guidances[b].axle;
+    scene.bodies[b].sub_steps = sub_steps[b];
   }
   if (!hand) return {};
   if (Status status = check_saved_hand(*hand); !status) return status;
@@ -159,7 +176,7 @@ std::vector<std::uint8_t> Snapshot::to_bytes() const {
   if (content_->sleepers) archive(content_->sleepers->configuration, content_->sleepers->islands);
   archive(content_->state, content_->controls);
   archive(all.scene.vat ? all.scene.vat->hand : std::nullopt, appearances_of(all.scene),
-          guidances_of(all.scene));
+          guidances_of(all.scene), sub_steps_of(all.scene));
   close_seal(bytes);
   return bytes;
 }

@@ -4,16 +4,22 @@
 #include "core/support/check.h"
 
 namespace vat {
+namespace {
 
-void drift(const Model& model, TaskRunner* runner, Configuration& configuration, Real dt) {
-  VAT_CHECK(configuration.position.size() == model.particle_count &&
-            configuration.velocity.size() == model.particle_count &&
-            configuration.rigid.size() == model.rigid_bodies.size());
-  for_blocks(runner, model.free_count, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
+/// Moves the particles from `first` to `last`, without `last`.
+void drift_particles(TaskRunner* runner, Configuration& configuration, Index first, Index last,
+                     Real dt) {
+  VAT_CHECK(first <= last && last <= configuration.position.size() &&
+            configuration.velocity.size() == configuration.position.size());
+  for_blocks(runner, last - first, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = first + begin; i < first + end; ++i) {
       configuration.position[i] += dt * configuration.velocity[i];
     }
   });
+}
+
+void drift_rigid_bodies(const Model& model, Configuration& configuration, Real dt) {
+  VAT_CHECK(configuration.rigid.size() == model.rigid_bodies.size());
   for (std::size_t b = 0; b < model.rigid_bodies.size(); ++b) {
     const RigidModel& rigid = model.rigid_bodies[b];
     RigidState& state = configuration.rigid[b];
@@ -22,6 +28,22 @@ void drift(const Model& model, TaskRunner* runner, Configuration& configuration,
     if (rigid.free_from > 0 && state.angular_momentum.isZero(0)) continue;
     state.orientation = rotate_freely(rigid, state.orientation, state.angular_momentum, dt);
   }
+}
+
+}  // namespace
+
+void drift(const Model& model, TaskRunner* runner, Configuration& configuration, Real dt) {
+  drift_particles(runner, configuration, 0, model.free_count, dt);
+  drift_rigid_bodies(model, configuration, dt);
+}
+
+void drift_liquids(const Model& model, TaskRunner* runner, Configuration& configuration, Real dt) {
+  drift_particles(runner, configuration, 0, model.liquid_count, dt);
+}
+
+void drift_solids(const Model& model, TaskRunner* runner, Configuration& configuration, Real dt) {
+  drift_particles(runner, configuration, model.liquid_count, model.free_count, dt);
+  drift_rigid_bodies(model, configuration, dt);
 }
 
 void move_with_transport(const Model& model, TaskRunner* runner, const Forces& forces,

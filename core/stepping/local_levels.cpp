@@ -33,7 +33,9 @@ void choose_local_levels(const Model& model, const PresentSteps& steps, Real dt,
   VAT_CHECK(steps.particle.size() == model.free_count &&
             steps.rigid.size() == model.rigid_bodies.size());
   levels.particle.resize(model.particle_count);
-  for (Index i = 0; i < model.free_count; ++i) {
+  const Index coupled = model.is_coupled ? model.liquid_count : 0;
+  std::fill_n(levels.particle.begin(), coupled, std::uint8_t{0});
+  for (Index i = coupled; i < model.free_count; ++i) {
     levels.particle[i] = model.inverse_mass[i] == 0 ? 0 : small_level_of(steps.particle[i], dt);
   }
   for (std::size_t b = 0; b < model.rigid_bodies.size(); ++b) {
@@ -43,12 +45,29 @@ void choose_local_levels(const Model& model, const PresentSteps& steps, Real dt,
     std::fill(levels.particle.begin() + rigid.particles.begin,
               levels.particle.begin() + rigid.particles.end, level);
   }
-  levels.liquid = model.liquid_count > 0 ? small_level_of(steps.liquid, dt) : 0;
+  levels.liquid = model.liquid_count > coupled ? small_level_of(steps.liquid, dt) : 0;
   if (model.spring_ends.empty()) return;
   const auto [coarsest, finest] = std::ranges::minmax(levels.particle);
   if (finest - coarsest <= kMaxLevelDifference) return;
   while (raise_neighbours(model, levels.particle)) {
   }
+}
+
+std::string describe_sub_steps(const Model& model) {
+  const Numerics& numerics = model.scene.numerics;
+  if (numerics.control != StepControl::local) return {};
+  const StepBounds bounds = find_step_bounds(model);
+  std::string text;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const ModelBody& body = model.bodies[b];
+    if (body.kind == BodyKind::liquid) continue;
+    std::uint32_t level = level_of(numerics.step / model.scene.bodies[b].sub_steps, numerics.step);
+    for (Index i = body.particles.begin; i < std::min(body.particles.end, model.free_count); ++i) {
+      level = std::max(level, level_of(bounds.own_step[i], numerics.step));
+    }
+    text += "sub-steps of " + body.name + ": " + std::to_string(1U << level) + '\n';
+  }
+  return text;
 }
 
 }  // namespace vat

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "core/stepping/step_control.h"
 
 namespace vat {
@@ -14,5 +16,10 @@ namespace vat {
 void choose_local_levels(const Model& model, const PresentSteps& steps, Real dt,
                          LocalLevels& levels);
 inline constexpr int kMaxLevelDifference = 1;
+
+/// Returns a line for each deformable and rigid body with the number of parts of a step that its
+/// springs and its description require. Contacts and fast motion may require more. Returns an empty
+/// text for other controls.
+std::string describe_sub_steps(const Model& model);
 
 }  // namespace vat

@@ -138,9 +138,11 @@ bool LocalPairs::is_stale(const ForceModel& f, const Configuration& at) {
   if (f.model.contact_reach <= 0) return false;
   VAT_CHECK(built_at_.size() == at.position.size());
   farthest_.resize(contacts_.size());
+  const Index first = f.model.is_coupled ? f.model.liquid_count : 0;  // others have no connections
   for_blocks(f.runner, f.model.particle_count, [&](std::size_t begin, std::size_t end) {
     Real farthest = 0;
     for (std::size_t i = begin; i < end; ++i) {
+      if (i < first) continue;
       farthest = std::max(farthest, (at.position[i] - built_at_[i]).squaredNorm());
     }
     farthest_[begin / kBlockSize] = farthest;

@@ -16,6 +16,7 @@
 #include "core/rigid/rigid.h"
 #include "core/solid/springs.h"
 #include "core/state/kick_drift.h"
+#include "core/stepping/liquid_solver.h"
 #include "core/support/check.h"
 
 namespace vat {
@@ -77,6 +78,18 @@ ContactForce force_of(const Model& model, const Configuration& at, const std::ve
   return {push * n - friction_force, -arms.self.cross(friction_force)};
 }
 
+/// Returns the end of the particles on which liquids have forces.
+Index liquid_end(const Model& model) {
+  return model.is_coupled ? model.particle_count : model.liquid_count;
+}
+
+/// Returns whether the forces at the end of a step are those at the start of the next. A solve of
+/// velocities needs the pairs of its evaluation, and follows the kick of a whole step.
+bool keeps_forces(const Model& model) {
+  const LiquidSolver* solver = acting_liquid_solver(model);
+  return solver == nullptr || solver->solve_velocities == nullptr;
+}
+
 /// Returns whether the stage belongs to the forces of liquids: all stages that this file does not
 /// replace.
 bool is_of_liquids(const Stage& stage) {
@@ -131,16 +144,16 @@ void LocalStepper::build_pairs(const Moment& now) {
   pairs_current_ = true;
 }
 
-const std::vector<Vec3>& LocalStepper::evaluate_liquid(const Moment& now) {
-  VAT_CHECK(liquid_.particle.size() >= now.model().liquid_count);
-  std::fill_n(liquid_.particle.begin(), now.model().liquid_count, Vec3::Zero());
+const Forces& LocalStepper::evaluate_liquid(const Moment& now) {
+  VAT_CHECK(liquid_.particle.size() == now.model().particle_count);
+  std::fill_n(liquid_.particle.begin(), liquid_end(now.model()), Vec3::Zero());
   StepContext context = now.context(liquid_);
   for (const Stage& stage : now.model().plan.stages) {
     if (!is_of_liquids(stage)) continue;
     now.force_model.enter(stage.name);
     stage.run(context);
   }
-  return liquid_.particle;
+  return liquid_;
 }
 
 void LocalStepper::sum_connections(const Moment& now, const LocalLevels& closing,
@@ -159,7 +172,8 @@ void LocalStepper::sum_connections(const Moment& now, const LocalLevels& closing
         add(share_of(std::max(closing.particle[i], closing.particle[pair.other])), part, close);
         add(share_of(pair.level), part, open);
       });
-      if (!model.walls.empty()) {
+      const bool is_mirrored = model.is_coupled && i < model.liquid_count;
+      if (!model.walls.empty() && !is_mirrored) {
         const ContactForce part = wall_force(model, vat, now.at(), now.spins(), i);
         add(share_of(closing.particle[i]), part, close);
         add(share_of(opening.particle[i]), part, open);
@@ -173,9 +187,30 @@ void LocalStepper::sum_connections(const Moment& now, const LocalLevels& closing
   });
 }
 
+/// Adds the forces of liquids, also those on solids. The external forces on coupled liquids have
+/// the same kicks.
+void LocalStepper::add_liquid_forces(const Moment& now, const LocalLevels& closing,
+                                     const LocalLevels& opening, LiquidKicks kicks,
+                                     Forces& closing_forces, Forces& opening_forces) {
+  const Model& model = now.model();
+  for (Index i = 0; model.is_coupled && i < model.liquid_count; ++i) {
+    closing_forces.particle[i] *= kicks.closing;
+    opening_forces.particle[i] *= kicks.opening;
+  }
+  if (kicks.are_none()) return;
+  const Forces& own = evaluate_liquid(now);
+  const Real closing_share = kicks.closing * share_of(closing.liquid);
+  const Real opening_share = kicks.opening * share_of(opening.liquid);
+  for (Index i = 0; i < liquid_end(model); ++i) {
+    closing_forces.particle[i] += closing_share * own.particle[i];
+    opening_forces.particle[i] += opening_share * own.particle[i];
+  }
+  opening_forces.transport = own.transport;
+}
+
 void LocalStepper::evaluate_all(const Moment& now, const LocalLevels& closing,
-                                const LocalLevels& opening, Forces& closing_forces,
-                                Forces& opening_forces) {
+                                const LocalLevels& opening, LiquidKicks kicks,
+                                Forces& closing_forces, Forces& opening_forces) {
   const Model& model = now.model();
   now.force_model.enter("external_forces");
   StepContext context = now.context(opening_forces);
@@ -183,11 +218,7 @@ void LocalStepper::evaluate_all(const Moment& now, const LocalLevels& closing,
   closing_forces.particle = opening_forces.particle;
   closing_forces.friction_torque = opening_forces.friction_torque;
   if (model.liquid_count > 0) {
-    const std::vector<Vec3>& own = evaluate_liquid(now);
-    for (Index i = 0; i < model.liquid_count; ++i) {
-      closing_forces.particle[i] += share_of(closing.liquid) * own[i];
-      opening_forces.particle[i] += share_of(opening.liquid) * own[i];
-    }
+    add_liquid_forces(now, closing, opening, kicks, closing_forces, opening_forces);
   }
   sum_connections(now, closing, opening, closing_forces, opening_forces);
   if (!model.rigid_bodies.empty()) now.force_model.enter("gather_rigid_forces");
@@ -195,14 +226,17 @@ void LocalStepper::evaluate_all(const Moment& now, const LocalLevels& closing,
     StepContext gathered = now.context(*forces);
     gather_rigid_forces(gathered);
   }
-  if (now.force_model.report != nullptr) {
+  if (now.force_model.report == nullptr) return;
+  if (kicks.are_none()) {
+    now.force_model.report->particle_evaluations += model.particle_count - model.liquid_count;
+  } else {
     now.force_model.report->count_evaluation(model.particle_count);
   }
 }
 
 void LocalStepper::kick_liquid(const Moment& now, Real dt) {
   const Model& model = now.model();
-  const std::vector<Vec3>& own = evaluate_liquid(now);
+  const std::vector<Vec3>& own = evaluate_liquid(now).particle;
   for (Index i = 0; i < model.liquid_count; ++i) {
     now.state.now.velocity[i] +=
         (dt * share_of(now.state.levels.liquid) * model.inverse_mass[i]) * own[i];
@@ -275,46 +309,80 @@ std::optional<Fault> LocalStepper::find_fast(const Model& model, const Configura
   return {};
 }
 
-void LocalStepper::take_step(const ForceModel& f, State& state, Real time, Real dt,
-                             const StepBounds& bounds, const GuardBounds& guard) {
-  for (Forces* forces : {&closing_, &due_, &liquid_}) resize(f.model, *forces);
-  const Moment start{f, state, time};
+void LocalStepper::evaluate_at_start(const Moment& start, Real dt, const StepBounds& bounds,
+                                     const GuardBounds& guard) {
+  State& state = start.state;
   if (!state.forces_current) {
     set_levels(start, state, dt, bounds, guard);
     build_pairs(start);
-    evaluate_all(start, state.levels, state.levels, closing_, state.forces);
+    evaluate_all(start, state.levels, state.levels,
+                 keeps_forces(start.model()) ? kVerlet : kEulerStart, closing_, state.forces);
   } else if (!pairs_current_) {
     build_pairs(start);
   }
-  finest_ = pairs_.finest();
-  coarsest_ = pairs_.coarsest();
-  f.enter("kick");
-  kick(f.model, f.runner, state.forces, state.now, dt / 2);
+}
 
+void LocalStepper::evaluate_at_end(const Moment& end, Real dt, const StepBounds& bounds,
+                                   const GuardBounds& guard) {
+  State& state = end.state;
+  const bool is_start_of_next = keeps_forces(end.model());
+  closing_levels_ = state.levels;
+  if (is_start_of_next) set_levels(end, state, dt, bounds, guard);
+  build_pairs(end);
+  evaluate_all(end, closing_levels_, state.levels, is_start_of_next ? kVerlet : kEulerEnd, closing_,
+               state.forces);
+}
+
+/// Drifts all particles, and kicks them between the parts of the drift. Coupled liquids have no
+/// connections, and drift at once.
+void LocalStepper::drift_in_parts(const ForceModel& f, State& state, Real time, Real dt) {
+  const bool is_coupled = f.model.is_coupled;
+  const auto drift_part = [&](Real part) {
+    f.enter("drift");
+    if (is_coupled) {
+      drift_solids(f.model, f.runner, state.now, part);
+    } else {
+      drift(f.model, f.runner, state.now, part);
+    }
+    StepContext context = Moment{f, state, time}.context(due_);
+    pose_rigid_bodies(context);
+  };
   VAT_CHECK(finest_ >= 0 && finest_ <= kMaxStepLevel && coarsest_ <= finest_);
   const std::uint32_t parts = 1U << finest_;
   const Real part = dt / parts;
-  StepContext context = start.context(due_);
   for (std::uint32_t n = 1; n < parts; ++n) {
-    f.enter("drift");
-    drift(f.model, f.runner, state.now, part);
-    pose_rigid_bodies(context);
+    drift_part(part);
     const Moment now{f, state, time + n * part};
     if (pairs_.is_stale(f, state.now)) build_pairs(now);
     kick_due(now, finest_ - std::countr_zero(n), dt);
   }
-  f.enter("drift");
-  drift(f.model, f.runner, state.now, part);
-  pose_rigid_bodies(context);
+  drift_part(part);
+  if (!is_coupled) return;
+  drift_liquids(f.model, f.runner, state.now, dt);
+  move_with_transport(f.model, f.runner, state.forces, state.now, dt);
+}
 
-  const Moment end{f, state, time + dt};
-  closing_levels_ = state.levels;
-  set_levels(end, state, dt, bounds, guard);
-  build_pairs(end);
-  evaluate_all(end, closing_levels_, state.levels, closing_, state.forces);
+void LocalStepper::take_step(const ForceModel& f, State& state, Real time, Real dt,
+                             const StepBounds& bounds, const GuardBounds& guard) {
+  for (Forces* forces : {&closing_, &due_, &liquid_}) resize(f.model, *forces);
+  const LiquidSolver* solver = acting_liquid_solver(f.model);
+  evaluate_at_start({f, state, time}, dt, bounds, guard);
+  finest_ = pairs_.finest();
+  coarsest_ = pairs_.coarsest();
+  f.enter("kick");
+  kick(f.model, f.runner, state.forces, state.now, dt / 2);
+  if (solver != nullptr && solver->solve_velocities != nullptr) {
+    f.enter("project_velocities");
+    solver->solve_velocities(f, state, time, dt);
+  }
+  drift_in_parts(f, state, time, dt);
+  if (solver != nullptr && solver->correct_positions != nullptr) {
+    solver->correct_positions(f, state, time + dt);
+  }
+  evaluate_at_end({f, state, time + dt}, dt, bounds, guard);
   f.enter("kick");
   kick(f.model, f.runner, closing_, state.now, dt / 2);
-  state.forces_current = true;
+  state.forces_current = keeps_forces(f.model);
 }
 
 }  // namespace vat

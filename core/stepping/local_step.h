@@ -15,8 +15,14 @@ namespace vat {
 /// momentum are conserved up to rounding. Dashpots depend on the velocities before the kick, so
 /// that damping has order 1.
 ///
-/// The force of a wall has the level of the particle. All forces of liquids have one common level.
-/// Gravity, the central field and forces of users have level 0.
+/// The force of a wall has the level of the particle. All forces of gas liquids have one common
+/// level. Gravity, the central field and forces of users have level 0.
+///
+/// Coupled liquids (tait, incompressible) have level 0: the whole step is a step of the liquid, and
+/// solids take sub-steps within it. The forces between liquids and solids are impulses at the ends
+/// of the whole step, equal and opposite on both sides, so that momentum is conserved up to
+/// rounding. The order is that of the solver: 2 with tait. An incompressible liquid takes steps of
+/// symplectic Euler: its forces act at the start of the step, over the whole step.
 class LocalStepper {
  public:
   /// Takes a step of `dt` [s] from `time` [s], with the levels that were chosen at the end of the
@@ -38,17 +44,37 @@ class LocalStepper {
 
  private:
   struct Moment;
+  /// The lengths of the kicks of liquids at the end of a step and at the start of the next, in half
+  /// steps.
+  struct LiquidKicks {
+    Real closing;
+    Real opening;
+    bool are_none() const { return closing == 0 && opening == 0; }
+  };
   void set_levels(const Moment& now, State& state, Real dt, const StepBounds& bounds,
                   const GuardBounds& guard);
   void build_pairs(const Moment& now);
+  /// Computes the forces at the end of a step and at the start of the next.
   void evaluate_all(const Moment& now, const LocalLevels& closing, const LocalLevels& opening,
-                    Forces& closing_forces, Forces& opening_forces);
+                    LiquidKicks kicks, Forces& closing_forces, Forces& opening_forces);
+  void add_liquid_forces(const Moment& now, const LocalLevels& closing, const LocalLevels& opening,
+                         LiquidKicks kicks, Forces& closing_forces, Forces& opening_forces);
+  void evaluate_at_start(const Moment& start, Real dt, const StepBounds& bounds,
+                         const GuardBounds& guard);
+  void evaluate_at_end(const Moment& end, Real dt, const StepBounds& bounds,
+                       const GuardBounds& guard);
+  void drift_in_parts(const ForceModel& force_model, State& state, Real time, Real dt);
   void sum_connections(const Moment& now, const LocalLevels& closing, const LocalLevels& opening,
                        Forces& closing_forces, Forces& opening_forces);
   void kick_due(const Moment& now, int due, Real dt);
   void kick_liquid(const Moment& now, Real dt);
   void kick_rigid(const Moment& now, Real dt);
-  const std::vector<Vec3>& evaluate_liquid(const Moment& now);
+  const Forces& evaluate_liquid(const Moment& now);
+
+  static constexpr LiquidKicks kVerlet{1, 1};
+  // Symplectic Euler, in which the end of a step is not the start of the next.
+  static constexpr LiquidKicks kEulerStart{0, 2};
+  static constexpr LiquidKicks kEulerEnd{0, 0};
 
   LocalPairs pairs_;
   bool pairs_current_ = false;

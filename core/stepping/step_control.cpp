@@ -75,7 +75,16 @@ void bound_liquid(const Model& model, std::size_t b, StepBounds& bounds) {
   }
 }
 
-void bound_deformable(const Model& model, const ModelBody& body, StepBounds& bounds) {
+/// The step of a body whose scene asks for sub-steps.
+Real wanted_step(const Model& model, std::size_t body) {
+  const Numerics& numerics = model.scene.numerics;
+  const std::uint32_t parts = model.scene.bodies[body].sub_steps;
+  return numerics.control == StepControl::local && parts > 1 ? numerics.step / parts : kInfinity;
+}
+
+void bound_deformable(const Model& model, std::size_t b, StepBounds& bounds) {
+  const ModelBody& body = model.bodies[b];
+  const Real wanted = wanted_step(model, b);
   const Oscillation cells{
       model.scene.forces.springs && !body.sample->cells.empty()
           ? bound_cells(*body.sample, model.scene.materials[body.material].bulk_modulus,
@@ -92,7 +101,7 @@ void bound_deformable(const Model& model, const ModelBody& body, StepBounds& bou
       own.omega2 += cells.omega2;
     }
     bounds.own[i] = limiting(model, own);
-    bounds.own_step[i] = safe_step(model.scene.numerics, bounds.own[i]);
+    bounds.own_step[i] = std::min(safe_step(model.scene.numerics, bounds.own[i]), wanted);
   }
 }
 
@@ -105,8 +114,10 @@ Real find_scene_step(const Model& model) {
   }
   for (std::size_t b = 0; model.is_coupled && b < model.bodies.size(); ++b) {
     if (model.bodies[b].kind == BodyKind::liquid) continue;
-    const Oscillation own = limiting(model, compressed(model, model.damping.own[b]));
-    step = std::min(step, safe_step(numerics, own));
+    // With local control, the springs of the body limit its sub-steps only.
+    const bool is_local = numerics.control == StepControl::local;
+    const Oscillation& own = is_local ? model.damping.by_liquids[b] : model.damping.own[b];
+    step = std::min(step, safe_step(numerics, limiting(model, compressed(model, own))));
   }
   return step;
 }
@@ -114,7 +125,7 @@ Real find_scene_step(const Model& model) {
 void bound_body(const Model& model, std::size_t b, StepBounds& bounds) {
   const ModelBody& body = model.bodies[b];
   if (body.kind == BodyKind::liquid) bound_liquid(model, b, bounds);
-  if (body.kind == BodyKind::deformable) bound_deformable(model, body, bounds);
+  if (body.kind == BodyKind::deformable) bound_deformable(model, b, bounds);
 }
 
 }  // namespace
@@ -185,7 +196,8 @@ void limit_rigid_travel(const PresentBounds& present, std::vector<Real>& steps) 
                                   ? rigid.inverse_mass * present.state.forces.rigid_force[b].norm()
                                   : 0;
     const Real way = kTravelShare * present.guard.travel[rigid.body];
-    steps[b] = std::min({present.bounds.scene_step, travel_time(way, speed, acceleration),
+    steps[b] = std::min({present.bounds.scene_step, wanted_step(present.model, rigid.body),
+                         travel_time(way, speed, acceleration),
                          turning > 0 ? kGreatestTurn / turning : kInfinity});
   }
 }
@@ -216,7 +228,16 @@ Oscillation liquid_bound(const PresentBounds& present, std::size_t body,
   const ModelBody& liquid = model.bodies[body];
   const Real pressure = lasting_pressure(present.state.now.pressure, liquid.particles, scratch);
   const LiquidModel& constants = *model.liquids[liquid.material];
-  return {pressed_lattice_omega2(pressure / constants.rest_density, constants.support_radius), 0};
+  const Real rate = solves_damping(model.scene) ? 0 : model.damping.own[body].rate;
+  return {pressed_lattice_omega2(pressure / constants.rest_density, constants.support_radius),
+          rate};
+}
+
+/// An acceleration of coupled liquids if the forces are not known.
+Real unknown_acceleration(const PresentBounds& present) {
+  const Scene& scene = present.model.scene;
+  const bool is_local = scene.numerics.control == StepControl::local;
+  return is_local && present.model.is_coupled && scene.forces.gravity ? scene.gravity.norm() : 0;
 }
 
 Real liquid_step(const PresentBounds& present, std::vector<Real>& scratch) {
@@ -226,7 +247,7 @@ Real liquid_step(const PresentBounds& present, std::vector<Real>& scratch) {
     const ModelBody& body = present.model.bodies[b];
     if (body.kind != BodyKind::liquid) continue;
     Real speed2 = 0;
-    Real acceleration = 0;
+    Real acceleration = unknown_acceleration(present);
     for (Index i = body.particles.begin; i < body.particles.end; ++i) {
       speed2 = std::max(speed2, (present.state.now.velocity[i] - mean).squaredNorm());
       acceleration = std::max(acceleration, present.acceleration(i));
@@ -279,9 +300,13 @@ Real greatest_approach(const PresentBounds& present, Real longest) {
 
 }  // namespace
 
-Real greatest_base_step(const ForceModel& f, const State& state, const StepBounds& bounds) {
+Real greatest_base_step(const ForceModel& f, const State& state, const StepBounds& bounds,
+                        const GuardBounds& guard, std::vector<Real>& pressures) {
   const Model& model = f.model;
   Real step = bounds.scene_step;
+  if (model.is_coupled) {
+    step = std::min(step, liquid_step({model, state, bounds, guard}, pressures));
+  }
   for (const Grab& grab : f.controls.grabs) {
     step = std::min(step, safe_step(model.scene.numerics, {grab.stiffness / grab.held_mass,
                                                            grab.damping / grab.held_mass}));

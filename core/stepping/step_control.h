@@ -53,10 +53,11 @@ void find_present_steps(const ForceModel& force_model, State& state, Real time, 
                         const StepBounds& bounds, const GuardBounds& guard, PresentSteps& steps);
 
 /// Returns the longest whole step for local control [s]. The limits are the prediction of contacts,
-/// and grabs and the central field, which have no separate level. In this step, two particles
-/// farther apart than twice Model::contact_reach do not come into contact.
-Real greatest_base_step(const ForceModel& force_model, const State& state,
-                        const StepBounds& bounds);
+/// and grabs, the central field and coupled liquids, which have no separate level. In this step,
+/// two particles farther apart than twice Model::contact_reach do not come into contact.
+/// `pressures` is a buffer.
+Real greatest_base_step(const ForceModel& force_model, const State& state, const StepBounds& bounds,
+                        const GuardBounds& guard, std::vector<Real>& pressures);
 
 /// Returns the longest step without a viscosity solve for an incompressible liquid, if this step is
 /// between half of `step` and `step`. Otherwise returns `step`. A viscosity solve costs about as

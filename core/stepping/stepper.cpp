@@ -142,7 +142,8 @@ Real Stepper::find_allowed_step(const StepInput& input, Real start) {
   f.enter("choose_step");
   const Numerics& numerics = input.numerics();
   if (numerics.control == StepControl::local) {
-    return greatest_base_step(f, state, input.step_bounds);
+    return greatest_base_step(f, state, input.step_bounds, input.guard_bounds,
+                              present_steps_.pressures);
   }
   // A step is at most twice as long as the last one.
   const Real last = state.history.step;

@@ -64,15 +64,9 @@ void check_incompressible(const Scene& scene, RangeCheck& check) {
           to_string(numerics.integrator) + '"');
 }
 
-/// Checks that coupled liquids have one support radius, and no local steps.
+/// Checks that coupled liquids have one support radius.
 void check_coupled_liquids(const Scene& scene, RangeCheck& check) {
   if (scene.pressure_solver == PressureSolver::gas) return;
-  const auto is_liquid = [](const BodyDescription& body) { return body.kind == BodyKind::liquid; };
-  if (scene.numerics.control == StepControl::local &&
-      std::ranges::any_of(scene.bodies, is_liquid)) {
-    check.add("not_allowed", "/numerics/control",
-              "\"local\" needs the pressure solver \"gas\" for liquids");
-  }
   std::optional<Real> support;
   for (std::size_t m = 0; m < scene.materials.size(); ++m) {
     const std::optional<LiquidConstants>& liquid = scene.materials[m].liquid;
@@ -216,7 +210,7 @@ Errors find_errors(const Scene& scene) {
   if (scene.sleeping) check_sleeping(*scene.sleeping, check);
   if (scene.vat) check_vat(scene, check);
   if (scene.dimensions == 2) check_plane(scene, check);
-  check_numerics(scene.numerics, check);
+  check_numerics(scene, check);
   check_spring_numerics(scene, check);
   std::vector<SampledBody> samples;
   check_bodies(scene, check, samples);
@@ -245,11 +239,6 @@ Errors find_body_errors(const Scene& scene, const CurrentScene& present,
   }
   if (std::ranges::find(scene.bodies, body.name, &BodyDescription::name) != scene.bodies.end()) {
     check.add("duplicate", path + "/name", "must not be the name of another body");
-  }
-  if (body.kind == BodyKind::liquid && scene.numerics.control == StepControl::local &&
-      scene.pressure_solver == PressureSolver::tait) {
-    check.add("not_allowed", path + "/kind",
-              "a liquid needs the pressure solver \"gas\" for \"local\" steps");
   }
   Allowance allowance;
   for (std::size_t b = 0; b < present.bodies.size(); ++b) {

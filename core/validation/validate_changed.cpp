@@ -61,17 +61,12 @@ Errors find_changed_errors(const Scene& scene, const std::vector<const SampledBo
   RangeCheck check(errors);
   if (scene.bodies.size() > kMaxBodies) check.add("too_many", "/bodies", "too many bodies");
   const Scene open = without_bounds(scene);
-  const bool levels_are_own =
-      scene.numerics.control == StepControl::local && scene.pressure_solver != PressureSolver::gas;
   std::vector<SampledBody> samples(scene.bodies.size());
   std::vector<PairBody> pairs;
   Allowance total;
   for (std::size_t b = 0; b < scene.bodies.size() && errors.empty(); ++b) {
     const BodyDescription& body = scene.bodies[b];
     const std::string path = body_path(b);
-    if (levels_are_own && body.kind == BodyKind::liquid) {
-      check.add("not_allowed", path + "/kind", "a liquid needs other steps or the solver \"gas\"");
-    }
     const SampledBody* sample = known[b];
     if (sample != nullptr) {
       check_known(scene, body, path, check);

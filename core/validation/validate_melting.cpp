@@ -12,11 +12,6 @@ void check_melting(const Scene& scene, const BodyDescription& body, const std::s
     check.add("not_allowed", path, "only a deformable body melts");
     return;
   }
-  if (scene.numerics.control == StepControl::local &&
-      scene.pressure_solver == PressureSolver::tait) {
-    check.add("not_allowed", path,
-              "a liquid needs the pressure solver \"gas\" for \"local\" steps");
-  }
   const Real least_support = min_surface_support(scene.surface_model == SurfaceModel::cohesion);
   const auto material = std::ranges::find(scene.materials, into, &Material::name);
   if (material == scene.materials.end()) {

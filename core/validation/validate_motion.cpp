@@ -52,6 +52,7 @@ void check_jitter(const BodyDescription& body, const std::string& path, RangeChe
 }
 
 void check_hold(const BodyDescription& body, const std::string& path, RangeCheck& check) {
+  check.real(body.sub_steps, 1, kMaxSubSteps, path + "/sub_steps");
   if (!check.real(body.release, 0, kMaxRelease, path + "/release")) return;
   constexpr const char* kRigidOnly = "only a rigid body can be held";
   const bool is_rigid = body.kind == BodyKind::rigid;

@@ -51,7 +51,7 @@ void check_settling(const Settling& settling, RangeCheck& check);
 void check_sleeping(const Sleeping& sleeping, RangeCheck& check);
 /// Checks emitters and drains.
 void check_flow(const Scene& scene, Errors& errors);
-void check_numerics(const Numerics& numerics, RangeCheck& check);
+void check_numerics(const Scene& scene, RangeCheck& check);
 /// Checks that the accuracy of the scene, if given, can be reached. The scene must have no other
 /// errors.
 void check_accuracy(const Scene& scene, const std::vector<SampledBody>& samples, RangeCheck& check);

@@ -103,7 +103,8 @@ void check_sleeping(const Sleeping& sleeping, RangeCheck& check) {
   check.real(sleeping.after, kMinStep, kMaxSleepAfter, "/sleeping/after");
 }
 
-void check_numerics(const Numerics& numerics, RangeCheck& check) {
+void check_numerics(const Scene& scene, RangeCheck& check) {
+  const Numerics& numerics = scene.numerics;
   constexpr Real kWhole = 1e-9;  // rounding of tick / step
   const bool tick = check.real(numerics.tick, kMinStep, kMaxTick, "/numerics/tick");
   if (numerics.accuracy) {
@@ -112,6 +113,7 @@ void check_numerics(const Numerics& numerics, RangeCheck& check) {
   }
   check.real(numerics.tolerance, kMinAccuracy, kMaxTolerance, "/numerics/tolerance");
   if (numerics.control == StepControl::local &&
+      scene.pressure_solver != PressureSolver::incompressible &&  // has its own integrator
       numerics.integrator != IntegratorId::velocity_verlet) {
     check.add("not_allowed", "/numerics/control",
               std::string("\"local\" needs the integrator \"velocity_verlet\", not \"") +

@@ -210,6 +210,8 @@ void read_placement(ObjectReader& reader, BodyDescription& body, Errors& errors)
   read_member(reader, "melting", body.melting, errors, to_melting);
   read_member(reader, "motion", body.motion, errors, to_motion);
   read_member(reader, "axle", body.axle, errors, to_axle);
+  body.sub_steps =
+      static_cast<std::uint32_t>(reader.count("sub_steps", 1, kMaxSubSteps, body.sub_steps));
 }
 
 }  // namespace

@@ -188,7 +188,8 @@ Json to_json(const BodyDescription& body) {
                {"jitter", body.jitter},
                {"seed", body.seed},
                {"fixed", body.fixed},
-               {"release", body.release}};
+               {"release", body.release},
+               {"sub_steps", body.sub_steps}};
   // A spacing of zero means that explicit particles have no spacing.
   if (body.spacing != 0) json["spacing"] = body.spacing;
   if (body.mass) json["mass"] = *body.mass;

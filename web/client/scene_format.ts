@@ -239,7 +239,7 @@ export interface Numerics {
   step?: number;
   /** Time between frames [s], a whole number of steps */
   tick?: number;
-  /** fixed: all steps have the length step. adaptive: the whole scene uses shorter steps if necessary. local: each particle does, with velocity_verlet and gas */
+  /** fixed: all steps have the length step. adaptive: the whole scene uses shorter steps if necessary. local: each particle does, but liquids of tait and incompressible take whole steps */
   control?: 'fixed' | 'adaptive' | 'local';
   /** Relative error of contacts, and of motions whose period is longer than a step, per radian of oscillation */
   tolerance?: number;
@@ -375,6 +375,8 @@ export interface Body {
   fixed?: boolean;
   /** Time until which a rigid body is held [s] */
   release?: number;
+  /** Least number of parts of a step with local steps, rounded up to a power of two; not for liquids */
+  sub_steps?: number;
   /** A deformable body melts */
   melting?: {
     into: Name;

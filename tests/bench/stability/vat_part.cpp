@@ -1,5 +1,6 @@
 // The part of the stability run in which vats of liquid slide, shake and tilt.
 
+#include <utility>
 #include <vector>
 
 #include "core/threads/thread_pool.h"
@@ -21,7 +22,9 @@ std::vector<Shaken> shake_all(std::uint64_t vats, std::size_t threads) {
   for (const PressureSolver solver :
        {PressureSolver::gas, PressureSolver::tait, PressureSolver::incompressible}) {
     for (std::uint64_t seed = 1; seed <= vats; ++seed) {
-      all.push_back({stability::random_vat(seed, solver), {}});
+      stability::RandomVat vat = stability::random_vat(seed, solver);
+      all.push_back({vat, {}});
+      all.push_back({with_sub_steps(std::move(vat)), {}});
     }
   }
   ThreadPoolRunner runner(threads);

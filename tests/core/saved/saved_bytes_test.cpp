@@ -48,14 +48,14 @@ TEST(SavedBytes, WithMoreAfterThemAreRefused) {
 
 TEST(SavedBytes, OfAnotherVersionAreRefused) {
   std::vector<std::uint8_t> bytes = make_bytes();
-  for (const std::uint32_t version : {0U, 4U}) {
+  for (const std::uint32_t version : {0U, 5U}) {
     store<std::uint32_t>(bytes, kSealVersionAt, version);
     EXPECT_EQ(code_of(bytes), "other_version");
   }
 }
 
-// Version 2 has no motions and axles of bodies. Version 1 also has no motion of the vat at its end
-// unless a user moved it, and no appearances.
+// Version 3 has no sub-steps of bodies, and version 2 no motions and axles. Version 1 also has no
+// motion of the vat at its end unless a user moved it, and no appearances.
 TEST(SavedBytes, OfEarlierVersionsAreRead) {
   const Simulation simulation = make_simulation(make_shaken_vat(IntegratorId::velocity_verlet));
   std::vector<std::uint8_t> bytes = simulation.snapshot().to_bytes();
@@ -70,6 +70,8 @@ TEST(SavedBytes, OfEarlierVersionsAreRead) {
     EXPECT_EQ(code_of(bytes), "bad_value");
   };
   // Each absent member is one byte, and each list begins with its length.
+  const std::size_t sub_steps = sizeof(std::uint32_t);
+  cut(sizeof(std::uint32_t) + sub_steps * simulation.scene().bodies.size(), 3);
   const std::size_t guidance = 2;
   cut(sizeof(std::uint32_t) + guidance * simulation.scene().bodies.size(), 2);
   const std::size_t appearance = 6;

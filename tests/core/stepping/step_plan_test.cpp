@@ -164,5 +164,25 @@ TEST(StepPlanDeathTest, AColumnIsReadOnlyOnceWritten) {
   EXPECT_DEATH(builder.add("bad", {Column::velocity}, {}, &do_nothing), "written_");
 }
 
+TEST(StepPlan, ListsSubStepsOfLocalSteps) {
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 0.01);
+  scene.materials = {test::make_material("m")};
+  const std::vector<Vec3> points = {{0, 0, 0}, {1, 0, 0}};
+  scene.bodies = {make_body("soft", BodyKind::deformable, "m", make_particles(points, 1), 0.01),
+                  make_body("stiff", BodyKind::deformable, "m", make_particles(points, 1), 0.01),
+                  make_body("ball", BodyKind::rigid, "m", make_particles(points, 1), 0.01)};
+  // Two masses of 1 kg on a spring k have omega^2 = 2 k / kg. The step is at most 2 / omega.
+  scene.bodies[0].springs = {{0, 1, {100, 0}, 1.0}};
+  scene.bodies[1].springs = {{0, 1, {2e6, 0}, 1.0}};
+  scene.bodies[2].sub_steps = 5;
+  EXPECT_THAT(test::make_simulation(scene).plan_text(),
+              testing::Not(testing::HasSubstr("sub-steps")));
+  scene.numerics.control = StepControl::local;
+  const std::string plan = test::make_simulation(scene).plan_text();
+  EXPECT_THAT(plan, testing::HasSubstr("sub-steps of soft: 1\n"));
+  EXPECT_THAT(plan, testing::ContainsRegex("sub-steps of stiff: (16|32)\n"));
+  EXPECT_THAT(plan, testing::HasSubstr("sub-steps of ball: 8\n"));
+}
+
 }  // namespace
 }  // namespace vat::step_plan_test

@@ -268,8 +268,6 @@ TEST(Validate, NamesTheIntegratorAndTheSolverThatItCannotDrive) {
                                                 testing::HasSubstr("runge_kutta_4")));
   scene.numerics.integrator = IntegratorId::symplectic_euler;
   EXPECT_THAT(find_errors(scene), testing::IsEmpty());
-  scene.numerics.control = StepControl::local;
-  EXPECT_FALSE(find_errors(scene).empty());
   scene.bodies.resize(1);  // springs would need too short steps for a method of order 1
   scene.numerics = {};
   scene.numerics.accuracy = 0.01;

@@ -93,7 +93,7 @@ const char* const kFullDocument = R"json({
                "vertices": [[0, 0, 0], [0.5, 0, 0], [0, 0.5, 0], [0, 0, 0.5]],
                "triangles": [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]},
      "position": [2, 0.75, 1], "angular_velocity": [2, 0, 1],
-     "axle": {"direction": [4, 0, 2], "damping": 0.375}},
+     "axle": {"direction": [4, 0, 2], "damping": 0.375}, "sub_steps": 24},
     {"name": "pair", "kind": "deformable", "material": "rubber", "spacing": 0.05,
      "shape": {"type": "particles",
                "positions": [[0, 0, 0], [0.1, 0, 0], [0.2, 0, 0]],
@@ -180,6 +180,7 @@ std::vector<BodyDescription> full_bodies() {
   bodies[3].fixed = true;
   bodies[4].angular_velocity = {2, 0, 1};
   bodies[4].axle = Axle{{4, 0, 2}, 0.375};
+  bodies[4].sub_steps = 24;
   bodies[6].motion = SlideMotion{{1, 0, 2}, -0.25, 4.5};
   bodies[5].springs = {{0, 1, {100.5, 0.125}, 0.2}, {2, 1, {50.5, 0}, {}}};
   return bodies;
@@ -256,7 +257,9 @@ std::vector<std::uint8_t> bits_of(const Scene& scene) {
   SavingArchive archive(bytes);
   archive(scene);
   for (const Material& material : scene.materials) archive(material.appearance);
-  for (const BodyDescription& body : scene.bodies) archive(body.motion, body.axle);
+  for (const BodyDescription& body : scene.bodies) {
+    archive(body.motion, body.axle, body.sub_steps);
+  }
   return bytes;
 }
 

@@ -50,7 +50,7 @@ TEST(SceneJson, SavedBytesHoldEveryMember) {
   Scene loaded;
   archive(loaded);
   for (Material& material : loaded.materials) archive(material.appearance);
-  for (BodyDescription& body : loaded.bodies) archive(body.motion, body.axle);
+  for (BodyDescription& body : loaded.bodies) archive(body.motion, body.axle, body.sub_steps);
   EXPECT_FALSE(archive.failed());
   EXPECT_EQ(write_scene(loaded), write_scene(full_scene()));
 }

@@ -115,6 +115,15 @@ RandomVat random_vat(std::uint64_t seed, PressureSolver solver) {
   return vat;
 }
 
+RandomVat with_sub_steps(RandomVat vat) {
+  vat.scene.name += "-sub-steps";
+  vat.scene.numerics.control = StepControl::local;
+  LatticeSprings& springs = *vat.scene.materials[1].springs;
+  springs.structural->stiffness *= 100;
+  springs.shear->stiffness *= 100;
+  return vat;
+}
+
 VatReport shake(const RandomVat& vat) {
   Simulation simulation = test::make_simulation(vat.scene);
   const Real height = vat.scene.vat->max.z() - vat.scene.vat->min.z();

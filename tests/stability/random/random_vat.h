@@ -23,6 +23,10 @@ struct RandomVat {
 /// speed of sound is the recommended one, ten times the maximum speed.
 RandomVat random_vat(std::uint64_t seed, PressureSolver solver);
 
+/// Returns the vat with local steps and with solids that are a hundred times as stiff, so that they
+/// take sub-steps.
+RandomVat with_sub_steps(RandomVat vat);
+
 /// Result of a run.
 struct VatReport {
   std::string fault;  ///< empty: none

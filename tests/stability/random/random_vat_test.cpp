@@ -37,6 +37,12 @@ TEST_P(RandomVatsOf, LoseNothing) {
   }
 }
 
+TEST_P(RandomVatsOf, LoseNothingWithSubSteps) {
+  for (std::uint64_t seed = 1; seed <= kVats; ++seed) {
+    EXPECT_EQ(shake(with_sub_steps(random_vat(seed, GetParam()))).fault, "") << "seed " << seed;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Solvers, RandomVatsOf, testing::ValuesIn(kSolvers),
                          [](const auto& solver) { return to_string(solver.param); });
 
