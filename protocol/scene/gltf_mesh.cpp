@@ -216,7 +216,7 @@ class Accessor {
   Vec3 vector(std::size_t element) const {
     std::string_view at = bytes_.substr(element * stride_);
     Vec3 vector;
-    for (Real& value : vector) value = *take<float>(at);
+    for (Real& value : vector) value = static_cast<Real>(*take<float>(at));
     return vector;
   }
 

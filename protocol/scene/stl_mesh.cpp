@@ -26,7 +26,7 @@ RawMesh read_binary(std::string_view bytes) {
     bytes.remove_prefix(kTriangleBytes);
     std::array<Vec3, 3> corners;
     for (Vec3& corner : corners) {
-      for (Real& value : corner) value = *take<float>(numbers);
+      for (Real& value : corner) value = static_cast<Real>(*take<float>(numbers));
     }
     add_triangle(corners, mesh);
   }
