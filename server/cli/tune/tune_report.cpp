@@ -7,10 +7,6 @@
 
 namespace vat {
 
-using tune::Outcome;
-using tune::OutcomeKind;
-using tune::Point;
-
 namespace {
 
 constexpr char kDot = '.';
@@ -44,7 +40,7 @@ class LogAxis {
   int cells_;
 };
 
-std::string row_of(char label, bool is_own, const Point& point, const Outcome& outcome,
+std::string row_of(char label, bool is_own, const tune::Point& point, const tune::Outcome& outcome,
                    const std::string& numerics) {
   std::uint64_t steps = 0;
   std::uint64_t iterations = 0;
@@ -70,7 +66,7 @@ std::string row_of(char label, bool is_own, const Point& point, const Outcome& o
 
 char TuneReport::label(std::size_t candidate) const {
   constexpr std::size_t kLetters = 26;
-  const auto found = std::ranges::find(front, candidate, &Point::candidate);
+  const auto found = std::ranges::find(front, candidate, &tune::Point::candidate);
   const auto at = static_cast<std::size_t>(found - front.begin());
   if (found != front.end() && at < kLetters) return static_cast<char>('a' + at);
   return candidate == set.own ? kOwn : kDot;
@@ -78,13 +74,13 @@ char TuneReport::label(std::size_t candidate) const {
 
 std::string TuneReport::table() const {
   std::string text = "        error   s per s   slowest     steps iterations  numerics\n";
-  std::vector<Point> rows = front;
-  for (const Point& point : points) {
+  std::vector<tune::Point> rows = front;
+  for (const tune::Point& point : points) {
     const bool is_listed =
-        std::ranges::find(front, point.candidate, &Point::candidate) != front.end();
+        std::ranges::find(front, point.candidate, &tune::Point::candidate) != front.end();
     if (point.candidate == set.own && !is_listed) rows.push_back(point);
   }
-  for (const Point& point : rows) {
+  for (const tune::Point& point : rows) {
     const char mark = label(point.candidate);
     text += row_of(mark == kOwn ? ' ' : mark, point.candidate == set.own, point,
                    outcomes[point.candidate],
@@ -98,19 +94,19 @@ std::string TuneReport::plot() const {
   constexpr int kColumns = 64;
   constexpr int kRows = 16;
   constexpr int kLabelWidth = 9;
-  const auto [fast, slow] = std::ranges::minmax(points, {}, &Point::seconds);
-  const auto [good, bad] = std::ranges::minmax(points, {}, &Point::error);
+  const auto [fast, slow] = std::ranges::minmax(points, {}, &tune::Point::seconds);
+  const auto [good, bad] = std::ranges::minmax(points, {}, &tune::Point::error);
   const LogAxis times(fast.seconds, slow.seconds, kColumns);
   const LogAxis errors(good.error, bad.error, kRows);
   std::vector<std::string> cells(kRows, std::string(kColumns, ' '));
-  const auto mark = [&](const Point& point) {
+  const auto mark = [&](const tune::Point& point) {
     char& cell = cells[static_cast<std::size_t>(errors.cell_of(point.error))]
                       [static_cast<std::size_t>(times.cell_of(point.seconds))];
     const char wanted = label(point.candidate);
     if (cell == ' ' || cell == kDot) cell = wanted;
   };
-  for (const Point& point : front) mark(point);
-  for (const Point& point : points) mark(point);
+  for (const tune::Point& point : front) mark(point);
+  for (const tune::Point& point : points) mark(point);
   std::ostringstream text;
   for (int row = kRows - 1; row >= 0; --row) {
     const bool is_labelled = row % 5 == 0;
@@ -132,14 +128,14 @@ std::string TuneReport::plot() const {
 }
 
 std::string TuneReport::counts() const {
-  const auto count = [this](OutcomeKind kind) {
-    return std::to_string(std::ranges::count(outcomes, kind, &Outcome::kind));
+  const auto count = [this](tune::OutcomeKind kind) {
+    return std::to_string(std::ranges::count(outcomes, kind, &tune::Outcome::kind));
   };
   std::string text = std::to_string(outcomes.size()) +
-                     " candidates: " + count(OutcomeKind::completed) + " completed, " +
-                     count(OutcomeKind::dropped) + " dropped early, " + count(OutcomeKind::failed) +
-                     " failed";
-  const std::string waiting = count(OutcomeKind::waiting);
+                     " candidates: " + count(tune::OutcomeKind::completed) + " completed, " +
+                     count(tune::OutcomeKind::dropped) + " dropped early, " +
+                     count(tune::OutcomeKind::failed) + " failed";
+  const std::string waiting = count(tune::OutcomeKind::waiting);
   return waiting == "0" ? text : text + ", " + waiting + " not completed";
 }
 

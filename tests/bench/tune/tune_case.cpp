@@ -4,52 +4,49 @@
 
 namespace vat::bench {
 
-using tune::Outcome;
-using tune::OutcomeKind;
-using tune::Point;
-
 namespace {
 
-const Point* find_point(const std::vector<Point>& points, std::size_t candidate) {
-  const auto found = std::ranges::find(points, candidate, &Point::candidate);
+const tune::Point* find_point(const std::vector<tune::Point>& points, std::size_t candidate) {
+  const auto found = std::ranges::find(points, candidate, &tune::Point::candidate);
   return found == points.end() ? nullptr : &*found;
 }
 
 /// Returns the greatest ratio of times over the errors of the exhaustive front.
-double worst_time_ratio(const std::vector<Point>& searched, const std::vector<Point>& all,
-                        Real floor) {
+double worst_time_ratio(const std::vector<tune::Point>& searched,
+                        const std::vector<tune::Point>& all, Real floor) {
   double worst = 1;
-  for (const Point& best : tune::pareto_front(all)) {
-    const Result<Point> choice = tune::choose_for_error(searched, best.error, floor);
+  for (const tune::Point& best : tune::pareto_front(all)) {
+    const Result<tune::Point> choice = tune::choose_for_error(searched, best.error, floor);
     if (!choice) return kAbsent;
-    const Point* chosen = find_point(all, choice.value().candidate);
+    const tune::Point* chosen = find_point(all, choice.value().candidate);
     if (chosen == nullptr) return kAbsent;
     worst = std::max(worst, chosen->seconds / best.seconds);
   }
   return worst;
 }
 
-double real_time_ratio(const std::vector<Point>& searched, const std::vector<Point>& all) {
-  const Result<Point> best = tune::choose_for_real_time(all);
-  const Result<Point> choice = tune::choose_for_real_time(searched);
+double real_time_ratio(const std::vector<tune::Point>& searched,
+                       const std::vector<tune::Point>& all) {
+  const Result<tune::Point> best = tune::choose_for_real_time(all);
+  const Result<tune::Point> choice = tune::choose_for_real_time(searched);
   if (!best || !choice) return kAbsent;
-  const Point* chosen = find_point(all, choice.value().candidate);
+  const tune::Point* chosen = find_point(all, choice.value().candidate);
   return chosen == nullptr ? kAbsent : chosen->error / best.value().error;
 }
 
 }  // namespace
 
 TuneResultRow compare_searches(const std::string& name, const tune::Tuning& tuning,
-                               const std::vector<Outcome>& searched,
-                               const std::vector<Outcome>& all) {
-  const std::vector<Point> found = tuning.points(searched);
-  const std::vector<Point> points = tuning.points(all);
+                               const std::vector<tune::Outcome>& searched,
+                               const std::vector<tune::Outcome>& all) {
+  const std::vector<tune::Point> found = tuning.points(searched);
+  const std::vector<tune::Point> points = tuning.points(all);
   TuneResultRow row{.scene = name, .candidates = searched.size()};
-  row.dropped =
-      static_cast<std::size_t>(std::ranges::count(searched, OutcomeKind::dropped, &Outcome::kind));
+  row.dropped = static_cast<std::size_t>(
+      std::ranges::count(searched, tune::OutcomeKind::dropped, &tune::Outcome::kind));
   row.front = tune::pareto_front(points).size();
   row.noise = tuning.measure().floor();
-  if (const Point* own = find_point(points, tuning.set().own)) {
+  if (const tune::Point* own = find_point(points, tuning.set().own)) {
     row.own_error = own->error;
     row.own_seconds = own->seconds;
   }
