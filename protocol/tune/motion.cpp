@@ -139,12 +139,7 @@ ErrorMeasure::ErrorMeasure(Motion fine, const Motion& coarse, const LeastMotion&
     }
     horizon_ = k;
   }
-  noise_.push_back(kLeastError);
-  sum = {};
-  for (std::size_t k = 1; k < fine_.size(); ++k) {
-    if (k <= horizon_) sum += deviation(fine_[k], coarse[k]);
-    noise_.push_back(std::max(quotient(sum), kLeastError));
-  }
+  floor_ = std::max(bound(coarse), kLeastError);
 }
 
 Real ErrorMeasure::bound(std::span<const Moment> run) const {

@@ -64,11 +64,9 @@ class ErrorMeasure {
   /// Returns a lower bound of the error of a run, of which `run` contains the first moments. The
   /// bound increases with each moment, up to the error itself.
   Real bound(std::span<const Moment> run) const;
-  /// Returns the noise as bound() after each moment, at least kLeastError. The first element is
-  /// that of the start.
-  const std::vector<Real>& noise() const { return noise_; }
-  /// Returns the noise of the whole run. Errors below it count as this value.
-  Real floor() const { return noise_.back(); }
+  /// Returns the noise: bound() of the coarse reference, at least kLeastError. Errors below it
+  /// count as this value.
+  Real floor() const { return floor_; }
 
  private:
   /// Squares of deviations or of motion, by quantity.
@@ -86,7 +84,7 @@ class ErrorMeasure {
   LeastMotion least_;
   std::size_t horizon_ = 0;
   Squares scale_;
-  std::vector<Real> noise_;
+  Real floor_ = 0;
 };
 
 }  // namespace vat::tune

@@ -26,7 +26,6 @@ class Search {
         start_(start),
         outcomes_(settings.candidates),
         trials_(settings.candidates) {
-    VAT_CHECK(settings.noise.size() == settings.moments + 1);
     VAT_CHECK(settings.probe > 0 && settings.probe <= settings.moments);
   }
 
@@ -94,7 +93,7 @@ class Search {
   }
 
   Real error_at(std::size_t c, std::size_t moment) const {
-    return std::max(outcomes_[c].segments[moment - 1].bound, settings_.noise[moment]);
+    return std::max(outcomes_[c].segments[moment - 1].bound, settings_.floor);
   }
 
   double seconds_to(std::size_t c, std::size_t moment) const {
@@ -112,8 +111,7 @@ class Search {
 
   bool is_better_at_end(std::size_t d, std::size_t c) const {
     if (outcomes_[d].kind != OutcomeKind::completed || outcomes_[c].segments.empty()) return false;
-    const Real floor = settings_.noise.back();
-    const Real bound = std::max(outcomes_[c].segments.back().bound, floor);
+    const Real bound = error_at(c, outcomes_[c].segments.size());
     if (error_at(d, settings_.moments) > bound) return false;
     const double seconds = outcomes_[d].seconds();
     return seconds <= outcomes_[c].seconds() || seconds * kTimeMargin <= expected_seconds(c);
@@ -232,7 +230,7 @@ std::vector<Point> points_of(const std::vector<Outcome>& outcomes, const SearchS
     const Segment& slowest = std::ranges::max(outcome.segments, {}, &Segment::seconds);
     points.push_back({c, outcome.seconds() / settings.duration,
                       slowest.seconds * parts / settings.duration,
-                      std::max(outcome.segments.back().bound, settings.noise.back())});
+                      std::max(outcome.segments.back().bound, settings.floor)});
   }
   return points;
 }

@@ -49,9 +49,7 @@ struct SearchSettings {
   double duration = 1;       ///< of a run [s]
   int repetitions = 3;       ///< timed runs of the best candidates
   bool exhaustive = false;   ///< completes every run
-  /// Noise after each moment, beginning with the start; moments + 1 values. The last one is the
-  /// floor of errors.
-  std::vector<Real> noise;
+  Real floor = 0;            ///< errors below it count as this value
   std::function<bool()> stop = [] { return false; };  ///< true: ends the search
   std::function<void(const Progress&)> show = [](const Progress&) {};
 };
@@ -68,7 +66,7 @@ struct Outcome {
   double seconds() const;  ///< total computing time
 };
 
-/// A candidate is dropped if another one is cheaper at the same moment by this factor, and has an
+/// A candidate is dropped if another one is faster at the same moment by this factor, and has an
 /// error that is smaller by kErrorMargin.
 inline constexpr double kTimeMargin = 1.25;
 inline constexpr Real kErrorMargin = 2;
@@ -83,10 +81,11 @@ inline constexpr Real kErrorMargin = 2;
 /// After each part of a run, a candidate c is dropped if another candidate d
 ///
 /// - is better at the same moment: time(d) kTimeMargin <= time(c) and error(d) kErrorMargin <=
-///   error(c), in which errors are at least the noise at this moment; or
-/// - is completed, and its error is at most the lower bound of the error of c, in which both are at
-///   least the floor, and its time is at most the present time of c, or the expected time of c
-///   divided by kTimeMargin.
+///   error(c); or
+/// - is completed, its error is at most the lower bound of the error of c, and its time is at most
+///   the present time of c, or the expected time of c divided by kTimeMargin.
+///
+/// All errors are at least the floor.
 std::vector<Outcome> search(const SearchSettings& settings, const StartTrial& start);
 
 /// Returns the completed outcomes as points.

@@ -106,7 +106,7 @@ SearchSettings Tuning::search_settings() const {
   search.duration = parts_.duration;
   search.repetitions = settings_.repetitions;
   search.exhaustive = settings_.exhaustive;
-  search.noise = measure_.noise();
+  search.floor = measure_.floor();
   search.stop = settings_.stop;
   search.show = [this](const Progress& progress) { settings_.show("candidates", progress); };
   return search;

@@ -37,7 +37,6 @@ class Machine {
   std::vector<Outcome> search(SearchSettings settings) {
     settings.candidates = given_.size();
     settings.moments = kMoments;
-    if (settings.noise.empty()) settings.noise.assign(kMoments + 1, 1e-9);
     return tune::search(settings, [this](std::size_t c) { return start(c); });
   }
 
@@ -116,7 +115,7 @@ TEST(Search, SmallDifferencesDropNothingBeforeTheEnd) {
 
 TEST(Search, ErrorsBelowTheNoiseAreEqual) {
   SearchSettings settings = once();
-  settings.noise.assign(kMoments + 1, 0.02);
+  settings.floor = 0.02;
   Machine machine({{2, 1e-4}, {1, 0.01}, {3, 1e-6}});
   const auto outcomes = machine.search(settings);
   EXPECT_THAT(kinds(outcomes),
@@ -202,7 +201,6 @@ TEST(Search, ChoicesAreThoseOfTheExhaustiveSearchInLessTime) {
     settings.exhaustive = true;
     const auto all = machine.search(settings);
     settings.moments = kMoments;
-    settings.noise.assign(kMoments + 1, 1e-9);
     for (const Real error : {0.3, 0.1, 0.03, 0.01, 0.003}) {
       const auto choice = choose_for_error(tune::points_of(searched, settings), error, 1e-9);
       const auto best = choose_for_error(tune::points_of(all, settings), error, 1e-9);
