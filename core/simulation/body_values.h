@@ -62,4 +62,10 @@ struct BodyMotion {
   std::optional<RigidPose> pose{};  ///< for rigid bodies, replaces both lists
 };
 
+/// Momenta of a rigid body.
+struct RigidMomentum {
+  Vec3 linear;   ///< [kg m/s]
+  Vec3 angular;  ///< about the centre of mass, world axes [kg m^2/s]
+};
+
 }  // namespace vat

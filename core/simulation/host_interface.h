@@ -30,6 +30,9 @@ class HostInterface {
   /// query does not exist.
   Result<Connections> connections(const ConnectionQuery& query) const;
 
+  /// Returns the momenta of a rigid body, or an empty optional for other bodies and unknown ids.
+  std::optional<RigidMomentum> rigid_momentum(BodyId id) const;
+
   /// Adds a body at the current time. Fails like Simulation::create(), with paths under "/body",
   /// and if the name is in use.
   Result<BodyId> add_body(const BodyDescription& body);
@@ -47,6 +50,14 @@ class HostInterface {
   /// - the body would be faster than kMaxSpeed;
   /// - the body would have more pairs than permitted at the start of a scene.
   Status move_body(BodyId id, const BodyPlacement& placement);
+  /// Replaces the positions and velocities of a body. Unlike move_body(), the description of the
+  /// body is unchanged, and the cost is that of a copy and of one force evaluation. Fails if
+  ///
+  /// - the body does not exist, or is rigid and held, driven or has an axle;
+  /// - `motion` does not have a value for each particle, or is out of range.
+  ///
+  /// The latter errors have paths under "/state".
+  Status set_body_motion(BodyId id, const BodyMotion& motion);
   /// Adds a material, or replaces the constants of the material with the same name. A new density
   /// changes the masses of bodies without an explicit mass. Velocities and numerics are unchanged.
   /// Plastic flow and tears persist if the springs join the same particles. A change of the

@@ -1,4 +1,4 @@
-// The command that restores a body at its last positions and motion.
+// The commands that set positions and velocities of a body.
 
 #include <cmath>
 
@@ -105,6 +105,37 @@ void set_motion(const BodyMotion& motion, const Model& model, const ModelBody& b
 }
 
 }  // namespace
+
+std::optional<RigidMomentum> HostInterface::rigid_momentum(BodyId id) const {
+  const ModelBody* body = impl_->find(id);
+  if (body == nullptr || body->kind != BodyKind::rigid) return {};
+  const RigidState& state = impl_->all_now().rigid[body->rigid];
+  return RigidMomentum{state.momentum, state.angular_momentum};
+}
+
+Status HostInterface::set_body_motion(BodyId id, const BodyMotion& motion) {
+  const ModelBody* found = impl_->find(id);
+  if (found == nullptr) return Error{"no_such_body", "/body", "there is no body with this id"};
+  if (found->kind == BodyKind::rigid) {
+    const RigidModel& rigid = impl_->all().rigid_bodies[found->rigid];
+    if (rigid.is_held(impl_->state.step_count) || rigid.axle) {
+      return Error{"not_allowed", "/body", "must be neither held, driven nor on an axle"};
+    }
+  }
+  const int dimensions = impl_->all().scene.dimensions;
+  const Status status = check_motion(motion, found->kind, found->particles.size(), dimensions);
+  if (!status) return status;
+  impl_->wake_all();
+  const ModelBody& body = *impl_->find(id);
+  set_motion(motion, *impl_->model, body, impl_->state.now);
+  if (body.kind == BodyKind::rigid) {
+    const RigidModel& rigid = impl_->model->rigid_bodies[body.rigid];
+    pose_rigid_body(*impl_->model, rigid, impl_->state.now.rigid[body.rigid], impl_->state.now);
+  }
+  impl_->state.forces_current = false;
+  impl_->stepper.forget();
+  return {};
+}
 
 Result<BodyId> HostInterface::add_body(const BodyDescription& body, const BodyMotion& motion) {
   Scene scene = impl_->all().scene;

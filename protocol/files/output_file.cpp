@@ -54,7 +54,8 @@ Status OutputFile::append(std::string_view bytes) {
 }
 
 Status OutputFile::write_at(std::size_t offset, std::string_view bytes) {
-  if (std::fseek(file_.get(), static_cast<long>(offset), SEEK_SET) != 0) return system_error("cannot be written");
+  if (std::fseek(file_.get(), static_cast<long>(offset), SEEK_SET) != 0)
+    return system_error("cannot be written");
   if (Status written = append(bytes); !written) return written;
   if (std::fseek(file_.get(), 0, SEEK_END) != 0) return system_error("cannot be written");
   return {};
@@ -68,6 +69,13 @@ Status OutputFile::commit() {
     return system_error("cannot be renamed from its .part");
   }
   return {};
+}
+
+Status write_output_file(const std::string& name, std::string_view content) {
+  Result<OutputFile> file = OutputFile::create(name);
+  if (!file) return file.errors();
+  if (Status written = file.value().append(content); !written) return written;
+  return file.value().commit();
 }
 
 }  // namespace vat

@@ -37,4 +37,7 @@ class OutputFile {
   std::unique_ptr<std::FILE, Close> file_;
 };
 
+/// Creates or replaces a file with this content.
+Status write_output_file(const std::string& name, std::string_view content);
+
 }  // namespace vat

@@ -34,20 +34,13 @@ Result<ConvertedScene> convert_file(const fs::path& file) {
   return convert_splishsplash(document.value(), files);
 }
 
-Status write_scene_file(const std::string& name, const std::string& text) {
-  Result<OutputFile> file = OutputFile::create(name);
-  if (!file) return file.errors();
-  if (Status written = file.value().append(text); !written) return written;
-  return file.value().commit();
-}
-
 int convert(const ConvertOptions& options) {
   const Result<ConvertedScene> converted = convert_file(options.source);
   if (!converted) return fail(options.source, converted.errors());
   const std::string text = scene_text(converted.value().document);
   if (options.output.empty()) {
     std::cout << text;
-  } else if (const Status written = write_scene_file(options.output, text); !written) {
+  } else if (const Status written = write_output_file(options.output, text); !written) {
     return fail(options.output, written.errors());
   }
   for (const Omission& omission : converted.value().omissions) {

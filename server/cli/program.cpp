@@ -39,6 +39,7 @@ int run_command(int argc, char** argv) {
   int exit_code = kExitOk;
   add_serve_command(app, exit_code);
   add_simulate_command(app, exit_code);
+  add_tune_command(app, exit_code);
   add_validate_command(app, exit_code);
   add_convert_command(app, exit_code);
   add_devices_command(app, exit_code);

@@ -18,6 +18,7 @@
 #include "tests/bench/soak/soak.h"
 #include "tests/bench/speed/speed.h"
 #include "tests/bench/stability/stability.h"
+#include "tests/bench/tune/tune.h"
 #include "tests/bench/validate/validate.h"
 
 namespace vat::bench {
@@ -37,6 +38,7 @@ int run_command(int argc, char** argv) {
   add_validate_command(app, exit_code);
   add_accuracy_command(app, exit_code);
   add_stability_command(app, exit_code);
+  add_tune_bench_command(app, exit_code);
   add_codec_command(app, exit_code);
   add_fanout_command(app, exit_code);
   add_seeks_command(app, exit_code);

@@ -38,6 +38,7 @@ cmake -G Ninja -S "$sources/tests/cli/library" -B "$work/example" \
   cmake --build "$work/example" >>"$work/log" 2>&1 || fail "$(<"$work/log")"
 # Free fall: -9.81 / 2 * 0.5^2 m.
 expect "a program with the library" "after 0.5 s: -1.22625 m" "$("$work/example/fall")"
+expect "an external simulator" "the ball has 1.62 m/s" "$("$work/example/pendulum")"
 # watch PROGRAM: runs the watcher with a server.
 watch() {
   python3 -B "$sources/tests/clients/run_example.py" "$vat" "$sources/tests/cli/library/watcher.txt" \

@@ -13,6 +13,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "tests/support/wait.h"
+
 namespace vat::test {
 
 namespace {
@@ -96,6 +98,10 @@ RunningProgram::~RunningProgram() {
   if (process_ < 0) return;
   kill(process_, SIGKILL);
   waitpid(process_, nullptr, 0);
+}
+
+bool RunningProgram::wait_for_output(const std::string& text) const {
+  return wait_until([&] { return read_file(folder_.file("out")).find(text) != std::string::npos; });
 }
 
 void RunningProgram::send(int signal) const {

@@ -53,6 +53,8 @@ class RunningProgram {
   RunningProgram(const RunningProgram&) = delete;
   RunningProgram& operator=(const RunningProgram&) = delete;
 
+  /// Waits until standard output contains the text.
+  bool wait_for_output(const std::string& text) const;
   void send(int signal) const;
   /// Waits for its end.
   ProgramResult finish();

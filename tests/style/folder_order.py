@@ -20,10 +20,10 @@ FOLDER_ORDER = (
     "core/liquid/surface", "core/contact", "core/contact/projection", "core/solid", "core/rigid",
     "core/external", "core/liquid/incompressible", "core/damping",
     # the step, and the simulation
-    "core/stepping", "core/sleep", "core/saved", "core/simulation",
+    "core/stepping", "core/sleep", "core/saved", "core/simulation", "core/coupling",
     # steps on other devices
     "core/device/opencl", "core/device/tait", "core/device",
-    "protocol/json", "protocol/files", "protocol/scene", "protocol/convert", "protocol/published", "protocol/frame",
+    "protocol/json", "protocol/files", "protocol/scene", "protocol/convert", "protocol/tune", "protocol/published", "protocol/frame",
     "protocol/messages", "protocol/recording", "protocol/python/native",
     # the client library
     "protocol/client/connection", "protocol/client/methods", "protocol/client/exchange", "protocol/client",
@@ -36,7 +36,7 @@ FOLDER_ORDER = (
     # the interface of clients
     "server/methods", "server/rpc",
     # the programs
-    "server/script", "server/settings", "server/cli/common", "server/cli/simulate", "server/cli/record",
+    "server/script", "server/settings", "server/cli/common", "server/cli/simulate", "server/cli/tune", "server/cli/record",
     "server/cli",
     "server",
 )

@@ -18,6 +18,7 @@ from xml.etree import ElementTree
 HEADERS = (
     "core/simulation/simulation.h", "core/simulation/host_interface.h",
     "core/simulation/body_values.h", "core/simulation/snapshot.h", "core/diagnostics.h",
+    "core/coupling/coupled_simulation.h", "core/coupling/external_body.h",
     "core/stage/advance_report.h", "core/scene/scene.h", "core/scene/body.h",
     "core/scene/material.h", "core/scene/interface.h", "core/scene/numerics.h",
     "core/scene/world.h", "core/support/result.h", "core/support/parallel.h",

@@ -34,6 +34,8 @@ int fail(const std::string& input, const Errors& errors);
 void add_serve_command(CLI::App& app, int& exit_code);
 /// Adds `vat simulate`.
 void add_simulate_command(CLI::App& app, int& exit_code);
+/// Adds `vat tune`, which measures the numerics of a scene.
+void add_tune_command(CLI::App& app, int& exit_code);
 /// Adds `vat validate`.
 void add_validate_command(CLI::App& app, int& exit_code);
 /// Adds `vat convert`, which reads scenes of SPlisHSPlasH.

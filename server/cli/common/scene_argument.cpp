@@ -43,10 +43,15 @@ Result<Scene> load_normal(const std::string& argument, const std::string& scenes
   if (!std::ranges::binary_search(names.value(), argument)) {
     return unknown_scene(argument, names.value());
   }
-  return load_file(fs::path(scenes_folder) / (argument + ".json"));
+  return load_file(scene_file(argument, scenes_folder));
 }
 
 }  // namespace
+
+std::string scene_file(const std::string& argument, const std::string& scenes_folder) {
+  if (names_a_file(argument)) return argument;
+  return (fs::path(scenes_folder) / (argument + ".json")).string();
+}
 
 Result<Scene> load_scene(const std::string& argument, const std::string& scenes_folder,
                          Level level) {

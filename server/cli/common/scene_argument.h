@@ -18,6 +18,9 @@ inline constexpr const char* kSceneHelp =
 Result<Scene> load_scene(const std::string& argument, const std::string& scenes_folder,
                          Level level = Level::normal);
 
+/// Returns the path of the file that load_scene() reads.
+std::string scene_file(const std::string& argument, const std::string& scenes_folder);
+
 /// Returns the sorted names of the catalogue, or an error if the folder cannot be read.
 Result<std::vector<std::string>> catalogue_names(const std::string& scenes_folder);
 

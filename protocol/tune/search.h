@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/types.h"
+#include "protocol/tune/front.h"
+
+/// Search for the candidates on the Pareto front of time and error. The search knows neither scenes
+/// nor clocks: tests use trials with controlled times and errors.
+namespace vat::tune {
+
+/// Part of a run between two moments.
+struct Segment {
+  double seconds = 0;  ///< computing time
+  Real bound = 0;      ///< lower bound of the error; the error itself at the last moment
+  std::uint64_t steps = 0;
+  std::uint64_t iterations = 0;
+};
+
+/// Run of one candidate.
+class Trial {
+ public:
+  virtual ~Trial() = default;
+  /// Runs to the next moment. Returns nothing if the run failed.
+  virtual std::optional<Segment> advance() = 0;
+  /// Reduces memory until the next call of advance().
+  virtual void suspend() {}
+};
+
+/// Returns a new run of a candidate from the start.
+using StartTrial = std::function<std::unique_ptr<Trial>(std::size_t candidate)>;
+
+/// Progress of a search, for the user.
+struct Progress {
+  std::size_t completed = 0;  ///< runs that have ended, including dropped candidates
+  std::size_t runs = 0;
+  double remaining = 0;  ///< estimated computing time [s]
+};
+
+struct SearchSettings {
+  std::size_t candidates = 0;
+  std::size_t moments = 10;  ///< per run
+  std::size_t probe = 3;     ///< number of moments that all candidates run before any is completed
+  double duration = 1;       ///< of a run [s]
+  int repetitions = 3;       ///< timed runs of the best candidates
+  bool exhaustive = false;   ///< completes every run
+  Real floor = 0;            ///< errors below it count as this value
+  std::function<bool()> stop = [] { return false; };  ///< true: ends the search
+  std::function<void(const Progress&)> show = [](const Progress&) {};
+};
+
+enum class OutcomeKind : std::uint8_t { waiting, completed, dropped, failed };
+
+/// Result of one candidate.
+struct Outcome {
+  OutcomeKind kind = OutcomeKind::waiting;
+  /// Medians over the runs of this candidate, by part. All parts if the run is complete.
+  std::vector<Segment> segments;
+  std::optional<std::size_t> dominated_by{};  ///< reason for `dropped`
+
+  double seconds() const;  ///< total computing time
+};
+
+/// A candidate is dropped if another one is faster at the same moment by this factor, and has an
+/// error that is smaller by kErrorMargin.
+inline constexpr double kTimeMargin = 1.25;
+inline constexpr Real kErrorMargin = 2;
+
+/// Runs candidates 0 to settings.candidates - 1, and returns their outcomes:
+///
+/// 1. Every candidate runs to moment `probe`.
+/// 2. The candidates are completed by ascending expected time.
+/// 3. The candidates on the front, and those whose time exceeds the front by at most kTimeMargin,
+///    run again, alternately. Their times are medians.
+///
+/// After each part of a run, a candidate c is dropped if another candidate d
+///
+/// - is better at the same moment: time(d) kTimeMargin <= time(c) and error(d) kErrorMargin <=
+///   error(c); or
+/// - is completed, its error is at most the lower bound of the error of c, and its time is at most
+///   the present time of c, or the expected time of c divided by kTimeMargin.
+///
+/// All errors are at least the floor.
+std::vector<Outcome> search(const SearchSettings& settings, const StartTrial& start);
+
+/// Returns the completed outcomes as points.
+std::vector<Point> points_of(const std::vector<Outcome>& outcomes, const SearchSettings& settings);
+
+}  // namespace vat::tune
