@@ -255,11 +255,15 @@ NatsConnection::NatsConnection(const NatsSettings& settings) : impl_(std::make_u
 }
 
 NatsConnection::~NatsConnection() {
-  impl_->is_closing = true;
+  close();
   natsSubscription_Destroy(impl_->inbox);
+  natsConnection_Destroy(impl_->connection);
+}
+
+void NatsConnection::close() {
+  if (impl_->is_closing.exchange(true)) return;
   natsConnection_Close(impl_->connection);
   impl_->closed.get_future().wait();
-  natsConnection_Destroy(impl_->connection);
   {
     const std::lock_guard lock(impl_->mutex);
     impl_->stopping = true;

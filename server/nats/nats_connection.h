@@ -44,11 +44,13 @@ class NatsConnection {
 
   /// Connects. Throws NatsError if no server answers.
   explicit NatsConnection(const NatsSettings& settings);
-  /// Fails all waiting requests.
+  /// As close().
   ~NatsConnection();
   NatsConnection(const NatsConnection&) = delete;
   NatsConnection& operator=(const NatsConnection&) = delete;
 
+  /// Ends the connection. Fails all waiting requests, and calls no handler afterwards.
+  void close();
   bool is_connected() const;
   /// Sets the function that is called after each reconnection. Call it before other functions.
   void on_reconnect(std::function<void()> function);

@@ -12,6 +12,8 @@ namespace {
 
 constexpr Stream::Milliseconds kAnswerTime(1000);
 constexpr Stream::Milliseconds kAppendTime(500);
+constexpr Stream::Milliseconds kRepeatTime(12'000);  // an election takes up to 10 s
+constexpr Stream::Milliseconds kRepeatInterval(100);
 constexpr Stream::Milliseconds kCreateTime(30'000);  // until new servers have elected a leader
 constexpr Stream::Milliseconds kCreateInterval(250);
 // Codes of JetStream.
@@ -68,6 +70,22 @@ std::string decode_text(const Json& message, const char* member) {
   return {bytes->begin(), bytes->end()};
 }
 
+/// Calls `operation` again while no server answers, for example during the election of a leader.
+template <class Operation>
+auto repeat_until_answered(const Operation& operation) {
+  const auto end = std::chrono::steady_clock::now() + kRepeatTime;
+  for (;;) {
+    try {
+      return operation();
+    } catch (const NatsError& error) {
+      const bool is_answer =
+          error.kind() == NatsError::Kind::refused || error.kind() == NatsError::Kind::conflict;
+      if (is_answer || std::chrono::steady_clock::now() > end) throw;
+    }
+    std::this_thread::sleep_for(kRepeatInterval);
+  }
+}
+
 }  // namespace
 
 Stream::Stream(NatsConnection& connection, const Settings& settings)
@@ -112,8 +130,10 @@ void Stream::create(const Settings& settings) {
 }
 
 Json Stream::call(const std::string& method, const Json& params) {
-  return parse_answer(
-      connection_.request("$JS.API.STREAM." + method + "." + name_, params.dump(), kAnswerTime));
+  return repeat_until_answered([&] {
+    return parse_answer(
+        connection_.request("$JS.API.STREAM." + method + "." + name_, params.dump(), kAnswerTime));
+  });
 }
 
 void Stream::send(const std::string& subject, const NatsConnection::Headers& headers,
@@ -148,12 +168,21 @@ void Stream::append(const std::string& subject, const std::string& data,
 
 std::uint64_t Stream::append(const std::string& subject, const std::string& data,
                              std::uint64_t expected, const NatsConnection::Headers& headers) {
-  const auto promise = std::make_shared<std::promise<Appended>>();
-  append(subject, data, expected, headers,
-         [promise](Appended result) { promise->set_value(std::move(result)); });
-  Appended result = promise->get_future().get();
-  if (const auto* error = std::get_if<NatsError>(&result)) throw NatsError(*error);
-  return std::get<std::uint64_t>(result);
+  bool may_be_stored = false;  // by an earlier attempt
+  return repeat_until_answered([&]() -> std::uint64_t {
+    const auto promise = std::make_shared<std::promise<Appended>>();
+    append(subject, data, expected, headers,
+           [promise](Appended result) { promise->set_value(std::move(result)); });
+    const Appended result = promise->get_future().get();
+    const auto* error = std::get_if<NatsError>(&result);
+    if (error == nullptr) return std::get<std::uint64_t>(result);
+    if (error->kind() == NatsError::Kind::conflict && may_be_stored) {
+      const auto stored = last(subject);
+      if (stored && stored->sequence > expected && stored->data == data) return stored->sequence;
+    }
+    may_be_stored = may_be_stored || error->kind() == NatsError::Kind::unreachable;
+    throw NatsError(*error);
+  });
 }
 
 std::optional<StoredMessage> Stream::get(const Json& params) {
@@ -199,8 +228,16 @@ std::vector<std::string> Stream::subjects(const std::string& pattern) {
 }
 
 void Stream::purge(const std::string& subject, std::uint64_t before) {
+  if (before <= 1) return;  // JetStream would remove all messages
   const Json answer = call("PURGE", {{"filter", subject}, {"seq", before}});
   if (auto error = find_stream_error(answer, name_)) throw NatsError(*error);
+}
+
+void Stream::purge_later(const std::string& subject, std::uint64_t before) {
+  if (before <= 1) return;  // JetStream would remove all messages
+  connection_.request("$JS.API.STREAM.PURGE." + name_, {},
+                      Json{{"filter", subject}, {"seq", before}}.dump(), kAnswerTime,
+                      [](const NatsConnection::Result&) {});
 }
 
 void Stream::purge(const std::string& subject) {

@@ -21,7 +21,8 @@ struct StoredMessage {
 };
 
 /// Stream of JetStream, used by its API subjects. A stream stores messages of several subjects and
-/// numbers them. Thread-safe. Functions that wait throw NatsError.
+/// numbers them. Thread-safe. Functions that wait repeat their request for some seconds while no
+/// server answers, and throw NatsError.
 class Stream {
  public:
   using Appended = std::variant<std::uint64_t, NatsError>;
@@ -45,7 +46,7 @@ class Stream {
   /// means that the message may have been stored.
   void append(const std::string& subject, const std::string& data, std::uint64_t expected,
               const NatsConnection::Headers& headers, std::function<void(Appended)> done);
-  /// As append(), but waits.
+  /// As append(), but waits. Repeats the attempt for some seconds while no server answers.
   std::uint64_t append(const std::string& subject, const std::string& data, std::uint64_t expected,
                        const NatsConnection::Headers& headers = {});
   /// Appends a message regardless of the subject's last message.
@@ -62,6 +63,8 @@ class Stream {
   std::vector<std::string> subjects(const std::string& pattern);
   /// Removes the subject's messages before this sequence. The subject may contain wildcards.
   void purge(const std::string& subject, std::uint64_t before);
+  /// As above, but does not wait. A failure has no effect, because a later call removes the rest.
+  void purge_later(const std::string& subject, std::uint64_t before);
   /// Removes all messages of the subject.
   void purge(const std::string& subject);
 

@@ -26,17 +26,6 @@ sockaddr_in loopback(std::uint16_t port) {
   return address;
 }
 
-std::uint16_t free_port() {
-  const int handle = socket(AF_INET, SOCK_STREAM, 0);
-  sockaddr_in address = loopback(0);
-  socklen_t size = sizeof address;
-  auto* const any = reinterpret_cast<sockaddr*>(&address);
-  const bool is_bound = bind(handle, any, size) == 0 && getsockname(handle, any, &size) == 0;
-  close(handle);
-  if (!is_bound) throw std::runtime_error("no free port");
-  return ntohs(address.sin_port);
-}
-
 bool accepts(std::uint16_t port) {
   const int handle = socket(AF_INET, SOCK_STREAM, 0);
   sockaddr_in address = loopback(port);
@@ -51,6 +40,17 @@ bool has_ended(int pid) {
 }
 
 }  // namespace
+
+std::uint16_t free_port() {
+  const int handle = socket(AF_INET, SOCK_STREAM, 0);
+  sockaddr_in address = loopback(0);
+  socklen_t size = sizeof address;
+  auto* const any = reinterpret_cast<sockaddr*>(&address);
+  const bool is_bound = bind(handle, any, size) == 0 && getsockname(handle, any, &size) == 0;
+  close(handle);
+  if (!is_bound) throw std::runtime_error("no free port");
+  return ntohs(address.sin_port);
+}
 
 NatsServers::NatsServers(std::size_t count) : servers_(count) {
   for (int attempt = 1;; ++attempt) {

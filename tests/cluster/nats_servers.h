@@ -9,6 +9,9 @@
 
 namespace vat::test {
 
+/// Returns a port of the loopback interface that was unused a moment ago.
+std::uint16_t free_port();
+
 /// Running processes `nats-server` with JetStream on the loopback interface. More than one process
 /// form a group. The destructor ends them.
 class NatsServers {

@@ -83,6 +83,8 @@ TEST_F(Nats, OnlyOneOfTwoWritersAppendsToASubject) {
   EXPECT_EQ(stream.last("log.1")->headers.at("Epoch"), "7");
   EXPECT_EQ(stream.next("log.1", first + 1)->sequence, third);
   EXPECT_FALSE(stream.next("log.1", third + 1));
+  stream.purge("log.1", 1);
+  EXPECT_TRUE(stream.find(first));
   stream.purge("log.1", third);
   EXPECT_FALSE(stream.find(first));
   EXPECT_EQ(stream.find(third)->data, "d");

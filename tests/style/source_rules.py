@@ -41,7 +41,7 @@ NOT_DETERMINISTIC = re.compile(
 # The server reads the time from its Clock, which tests control. The cost of work is measured by
 # CostClock.
 CLOCKED = tuple(f"server/{folder}/" for folder in
-                ("access", "clients", "directory", "frames", "history", "http", "messages", "methods",
+                ("access", "clients", "cluster", "directory", "frames", "history", "http", "messages", "methods",
                  "people", "replay", "rpc", "session", "storage"))
 SYSTEM_TIME = re.compile(r"\b(?:steady_clock|system_clock|SteadyClock)::now\b|\bsteady_timer\b")
 # Tests wait for events. tests/bench generates load for a given time.
