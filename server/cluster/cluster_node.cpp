@@ -22,6 +22,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds kTick(100);
 constexpr milliseconds kRefresh(10'000);
 constexpr milliseconds kFresh(1500);  // three renewals
+constexpr milliseconds kAnswering(750);
 constexpr milliseconds kOrphanTurn(1000);
 constexpr milliseconds kFailedPause(5000);
 constexpr milliseconds kClaimTime(20'000);
@@ -134,7 +135,11 @@ void ClusterNode::listen() {
         post([this, request] {
           host_->create_for(request.data,
                             [this, reply_to = request.reply_to](const std::string& answer) {
-                              if (!reply_to.empty()) connection_.publish(reply_to, answer);
+                              try {
+                                if (!reply_to.empty()) connection_.publish(reply_to, answer);
+                              } catch (const NatsError& error) {
+                                log_warning("an answer to another node: {}", error.what());
+                              }
                             });
         });
       }));
@@ -308,7 +313,8 @@ InstructionSet ClusterNode::common_instructions(InstructionSet greatest) const {
 }
 
 std::optional<std::string> ClusterNode::url_of(const LocatedSession& session) const {
-  if (session.owner.empty() || !nodes_.is_seen_within(session.owner, Lease::kHolderTime)) return {};
+  // The request waits if the owner may have failed, and is answered after its next renewal.
+  if (session.owner.empty() || !nodes_.is_seen_within(session.owner, kAnswering)) return {};
   const auto node = nodes_.find(session.owner);
   if (!node) return {};
   return node->url;

@@ -123,6 +123,8 @@ class SessionDirectory : private ClusterHost {
   void create_for(const std::string& request,
                   std::function<void(const std::string&)> answer) override;
   void cluster_changed() override;
+  /// Answers with a session that was created for another node, and a ticket for its owner.
+  void answer_created(const SessionId& id, const std::function<void(const std::string&)>& answer);
   /// Creates the session on another node of the cluster, if one has more room. Waits.
   std::optional<RpcResult> create_elsewhere(const Json& scene, Level level,
                                             const std::string& name);

@@ -96,17 +96,25 @@ void SessionDirectory::create_for(const std::string& request,
         result = std::move(*error);
       } else {
         auto created = create(json.at("name"), std::get<Scene>(read), {});
-        if (auto* id = std::get_if<SessionId>(&created)) {
-          result = Json{{"session", *id}, {"tick", 0}};
-        } else {
-          result = std::get<RpcError>(std::move(created));
-        }
+        if (const auto* id = std::get_if<SessionId>(&created)) return answer_created(*id, answer);
+        result = std::get<RpcError>(std::move(created));
       }
     } catch (const std::exception& error) {
       log_error("a session for another node is not created: {}", error.what());
     }
     answer(write_answer(result));
   });
+}
+
+void SessionDirectory::answer_created(const SessionId& id,
+                                      const std::function<void(const std::string&)>& answer) {
+  const auto time = resources_.settings.access.ticket_time;
+  resources_.tokens.issue({Role::owner, id, true}, 1, time,
+                          [id, answer](const AccessTokens::Issued& issued) {
+                            Json result{{"session", id}, {"tick", 0}};
+                            if (issued.token) result["ticket"] = *issued.token;
+                            answer(write_answer(result));
+                          });
 }
 
 std::optional<RpcResult> SessionDirectory::create_elsewhere(const Json& scene, Level level,
