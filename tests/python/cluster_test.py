@@ -1,14 +1,23 @@
-"""cluster_test.py VAT SCENES: both clients join a session of another node of a cluster."""
+"""cluster_test.py VAT CLUSTER.md: the example and the permissions of the document, and the clients.
+
+Both Python clients join a session of another node.
+"""
 
 import asyncio
+import re
+import shlex
 import shutil
 import socket
 import subprocess
 import sys
 import tempfile
+import unittest
+from pathlib import Path
 
 from vat import AsyncClient, Client
 
+PROGRAM = sys.argv[1]
+DOCUMENT = Path(sys.argv[2]).read_text()
 NATS = shutil.which("nats-server") or "/usr/sbin/nats-server"
 
 
@@ -18,52 +27,89 @@ def free_port():
         return any_port.getsockname()[1]
 
 
-def start(command, ready):
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    for line in process.stdout:
-        if ready in line:
-            return process
-    raise RuntimeError(f"{command[0]} did not start")
+def example():
+    """Returns the commands of the document with free ports, and the URLs of the nodes."""
+    text = "\n".join(re.findall(r"^    (.*)$", DOCUMENT, re.MULTILINE))
+    ports = {port: str(free_port()) for port in ("4222", "8081", "8082")}
+    text = re.sub("|".join(ports), lambda match: ports[match.group()], text)
+    nats, *nodes = [shlex.split(line) for line in text.splitlines()]
+    nats = [NATS, *nats[1:], "--addr", "127.0.0.1", "--port", ports["4222"]]
+    urls = {node[node.index("--node") + 1]: node[node.index("--public-url") + 1] for node in nodes}
+    return nats, [[PROGRAM, *node[1:]] for node in nodes], urls
 
 
-async def join_async(url, session):
-    async with AsyncClient(url) as client:
-        await client.join(session)
-        return client.url
+def permissions(node):
+    """Returns the row of the table as a list of subjects for each kind."""
+    rows = re.findall(r"^\| (publish|subscribe) \| (.*) \|$", DOCUMENT, re.MULTILINE)
+    return {kind: [subject.replace("NAME", node) for subject in re.findall("`(.*?)`", subjects)]
+            for kind, subjects in rows}
 
 
-def main(program, scenes):
-    processes = []
-    with tempfile.TemporaryDirectory() as folder:
-        try:
-            port = free_port()
-            processes.append(start(
-                [NATS, "-js", "-sd", f"{folder}/nats", "-a", "127.0.0.1",
-                 "-p", str(port)], "Server is ready"))
-            urls = {}
-            for name in "ab":
-                own = free_port()
-                urls[name] = f"ws://127.0.0.1:{own}/ws"
-                processes.append(start(
-                    [program, "serve", "--cluster", f"nats://127.0.0.1:{port}", "--node", name,
-                     "--public-url", urls[name], "--port", str(own), "--data", f"{folder}/{name}",
-                     "--scenes", scenes, "--scene", "pool"], "vat is at"))
-            client = Client(urls["a"])
+class Cluster(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.nats, self.nodes, self.urls = example()
+
+    def run_command(self, command, ready):
+        """Starts a process and waits for a line of its output."""
+        process = subprocess.Popen(command, cwd=self.folder.name, stdout=subprocess.PIPE,
+                                   stderr=subprocess.STDOUT, text=True)
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)
+        lines = []
+        for line in process.stdout:
+            lines.append(line)
+            if ready in line:
+                return
+        self.fail("".join(lines))
+
+    def start(self):
+        self.run_command(self.nats, "Server is ready")
+        for node in self.nodes:
+            self.run_command(node, "vat is at")
+
+    async def join_async(self, url, session):
+        async with AsyncClient(url) as client:
+            await client.join(session)
+            return client.url
+
+    def test_the_example_runs_and_clients_find_the_node_of_a_session(self):
+        self.start()
+        with Client(self.urls["a"]) as client:
             [listed] = client.call("session.list")["sessions"]
-            owner = urls[listed["node"]]
-            [other] = set(urls.values()) - {owner}
-            client.close()
-            client = Client(other)
+        owner = self.urls[listed["node"]]
+        [other] = set(self.urls.values()) - {owner}
+        with Client(other) as client:
             client.join(listed["session"])
-            assert client.url == owner, client.url
-            client.close()
-            joined = asyncio.run(join_async(other, listed["session"]))
-            assert joined == owner, joined
-        finally:
-            for process in processes:
-                process.kill()
-                process.communicate()
+            self.assertEqual(client.url, owner)
+        self.assertEqual(asyncio.run(self.join_async(other, listed["session"])), owner)
+
+    def test_the_documented_permissions_suffice(self):
+        users = []
+        for name in self.urls:
+            lists = [f"{kind}: {subjects}" for kind, subjects in permissions(name).items()]
+            self.assertEqual(len(lists), 2)
+            users.append(f"{{user: {name}, password: secret, permissions: {{{', '.join(lists)}}}}}")
+        config = f"authorization {{ users: [{', '.join(users)}] }}\n".replace("'", '"')
+        (Path(self.folder.name) / "nats.conf").write_text(config)
+        self.nats += ["--config", "nats.conf", "--log", "nats.log"]
+        for name, node in zip(self.urls, self.nodes):
+            node[:] = [word.replace("nats://", f"nats://{name}:secret@") for word in node]
+        log = Path(self.folder.name) / "nats.log"
+        process = subprocess.Popen(self.nats, cwd=self.folder.name)
+        self.addCleanup(process.wait)
+        self.addCleanup(process.kill)
+        while not log.exists() or "Server is ready" not in log.read_text():
+            self.assertIsNone(process.poll())
+        for node in self.nodes:
+            self.run_command(node, "vat is at")
+        for url in self.urls.values():
+            with Client(url) as client:
+                client.join("s1")
+                client.call("world.set_gravity", gravity=[0, 0, -9])
+        self.assertNotIn("iolation", log.read_text())
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    unittest.main(argv=sys.argv[:1])
