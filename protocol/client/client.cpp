@@ -151,7 +151,9 @@ void Client::Impl::run() {
 
 void Client::Impl::connect() {
   try {
-    set_socket(std::make_unique<WebSocket>(url_, options_.trust));
+    const std::string& url = exchange_.next_url();
+    set_socket(
+        std::make_unique<WebSocket>(url.empty() ? url_ : read_websocket_url(url), options_.trust));
     if (is_stopping()) return;
     const unsigned status = socket_->connect({}, Clock::now() + options_.timeout);
     if (status != kSwitchingProtocols) {

@@ -183,12 +183,15 @@ int serve(const ServeSettings& options, const ServeAccess& access, const Catalog
   }
   settings.storage = options.storage;
   if (options.durability == "process") settings.storage.durability = Durability::process;
+  settings.cluster = options.cluster;
   settings.end = [&](auto drain_time) { return stop_signal.request(drain_time); };
   SystemClock clock;
   SessionServer sessions(catalogue, settings, clock);
   if (sessions.recover() == 0) {
     const Result<SessionId> session = sessions.create_session(scene.name, scene);
-    if (!session) return fail(options.scene, session.errors());
+    // Another node of the cluster may have created it at the same time.
+    if (!session && !options.cluster.is_used()) return fail(options.scene, session.errors());
+    if (!session) log_warning("no first session: {}", session.errors().front().message);
   }
 
   const auto transport = make_websocket_transport(
@@ -294,6 +297,21 @@ int fail_in_file(const std::string& file, Errors errors) {
   return fail(file, errors);
 }
 
+/// Returns the reason why the settings of the cluster do not fit together, or null.
+const char* find_cluster_fault(const ServeSettings& settings) {
+  const ClusterSettings& cluster = settings.cluster;
+  if (cluster.tls_certificate.empty() != cluster.tls_key.empty()) {
+    return "cluster_tls_certificate and cluster_tls_key must be set together";
+  }
+  if (!cluster.is_used()) {
+    return cluster.node.empty() ? nullptr : "node requires cluster, the URLs of the NATS servers";
+  }
+  if (cluster.node.empty()) return "cluster requires node, the name of this node";
+  if (cluster.public_url.empty()) return "cluster requires public_url, the URL of this node";
+  if (settings.data == "none") return "cluster requires data, a folder for the working copies";
+  return nullptr;
+}
+
 int run(CommandLine& line) {
   if (line.print_variables) {
     std::cout << environment_file(line.table);
@@ -313,6 +331,10 @@ int run(CommandLine& line) {
   apply_options(line.table, line.options, sources);
   if (line.settings.tls_certificate.empty() != line.settings.tls_key.empty()) {
     std::cerr << "tls_certificate and tls_key must be set together\n";
+    return kExitUsage;
+  }
+  if (const char* const fault = find_cluster_fault(line.settings)) {
+    std::cerr << fault << '\n';
     return kExitUsage;
   }
   const std::vector<std::string> unknown = unknown_variables(line.table, variables);

@@ -13,6 +13,7 @@ namespace vat {
 namespace {
 
 constexpr std::uint16_t kTooSlow = 4008;
+constexpr std::uint16_t kNotOwner = 4012;
 constexpr std::size_t kMaxReasonBytes = 123;  // RFC 6455, section 5.5
 
 }  // namespace
@@ -174,6 +175,7 @@ bool ClientOutbox::send_frame(std::uint64_t subscription, std::uint32_t epoch,
   const std::lock_guard lock(mutex_);
   if (closed_ || !is_subscribed_ || subscription != subscription_ || epoch != epoch_) return false;
   VAT_CHECK(frame != nullptr && !frame->empty());
+  if (is_gate_closed()) return true;  // a later frame follows, or the end of the session
   window_.sent(frame_number({reinterpret_cast<const std::uint8_t*>(frame->data()), frame->size()}),
                now);
   queue_.sent(0, frame, false, connection_->queued_bytes());
@@ -243,12 +245,17 @@ void ClientOutbox::end_command(std::size_t bytes) {
 void ClientOutbox::send_control(std::string head, SharedText tail) {
   VAT_CHECK(mutex_.is_held());
   if (closed_) return;
+  if (is_gate_closed()) return close_locked(kNotOwner, "the server may not serve the session now");
   queue_.sent(head.size(), tail, true, connection_->queued_bytes());
   if (queue_.over_limit()) {
     close_as_too_slow("too slow: the control queue is full");
     return;
   }
   connection_->send_text(std::move(head), std::move(tail));
+}
+
+bool ClientOutbox::is_gate_closed() const {
+  return gate_ != nullptr && membership_ % 2 == 1 && !gate_->is_open();
 }
 
 void ClientOutbox::close_as_too_slow(std::string_view reason) {

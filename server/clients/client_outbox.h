@@ -14,6 +14,7 @@
 #include "server/clients/message_meter.h"
 #include "server/clients/queue_memory.h"
 #include "server/clients/read_budget.h"
+#include "server/clients/send_gate.h"
 #include "server/messages/limits.h"
 #include "server/messages/rpc_message.h"
 #include "server/support/limit_excess.h"
@@ -105,6 +106,9 @@ class ClientOutbox {
   /// Returns the budget of the client's reads, or null if reads are not limited.
   ReadBudget* read_budget() const { return read_budget_.get(); }
   void set_read_budget(std::unique_ptr<ReadBudget> budget) { read_budget_ = std::move(budget); }
+  /// Sets the gate, which must outlive the outbox. While the gate is closed, frames for a client in
+  /// a session are dropped, and any other message closes the connection instead.
+  void set_gate(const SendGate& gate) { gate_ = &gate; }
   /// Closes the connection with a code of PROTOCOL.md. No messages are sent or received afterwards.
   void close(std::uint16_t code, std::string_view reason);
   bool is_closed();
@@ -160,6 +164,7 @@ class ClientOutbox {
  private:
   // The caller must hold the mutex for these functions.
   void send_control(std::string head, SharedText tail);
+  bool is_gate_closed() const;
   void close_as_too_slow(std::string_view reason);
   /// `reason` is ASCII text.
   void close_locked(std::uint16_t code, std::string_view reason);
@@ -167,6 +172,7 @@ class ClientOutbox {
   const std::shared_ptr<Connection> connection_;
   std::unique_ptr<MessageMeter> meter_;
   std::unique_ptr<ReadBudget> read_budget_;
+  const SendGate* gate_ = nullptr;  // null: always open
   OwnedMutex mutex_;
   ControlQueue queue_;
   bool closed_ = false;

@@ -27,6 +27,14 @@ std::unique_ptr<Storage> open_storage(const ServerSettings& settings, Clock& clo
   return std::make_unique<Storage>(settings.data_folder, settings.storage, clock);
 }
 
+std::unique_ptr<ClusterNode> make_cluster_node(const ServerSettings& settings, Storage* storage,
+                                               Clock& clock, std::size_t threads) {
+  if (!settings.cluster.is_used()) return nullptr;
+  VAT_CHECK(storage != nullptr);
+  return std::make_unique<ClusterNode>(settings.cluster, *storage, clock,
+                                       static_cast<double>(threads), settings.version);
+}
+
 }  // namespace
 
 SessionId to_id(SessionNumber number) {
@@ -48,6 +56,7 @@ ServerResources::ServerResources(const Catalogue& catalogue_in, ServerSettings s
       downloads(settings.limits.max_download_bytes),
       storage(open_storage(settings, clock)),
       saved_in_memory(storage ? nullptr : std::make_unique<SavedInMemory>()),
+      cluster(make_cluster_node(settings, storage.get(), clock, runner.thread_count())),
       environment{catalogue,
                   settings.limits,
                   settings.instructions,
@@ -63,7 +72,8 @@ ServerResources::ServerResources(const Catalogue& catalogue_in, ServerSettings s
                   storage ? &storage->states() : &saved_in_memory->states,
                   storage ? &storage->scenes() : &saved_in_memory->scenes,
                   &memory,
-                  &storage_threads},
+                  &storage_threads,
+                  cluster.get()},
       recovery_limits(without_scene_limits(settings.limits)),
       recovery_budget(kUnlimitedResources),
       recovery_environment{catalogue,       recovery_limits, settings.instructions, runner, metrics,

@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "server/cluster/cluster_node.h"
 #include "server/directory/server_settings.h"
 #include "server/http/downloads.h"
 #include "server/messages/rpc_message.h"
@@ -27,7 +28,8 @@ struct SavedInMemory {
 /// Threads, storage and budgets that all sessions share. Each member depends only on previous
 /// members. All members are thread-safe.
 struct ServerResources {
-  /// Throws StorageError if the data folder cannot be used.
+  /// Throws StorageError if the data folder cannot be used, and NatsError if the servers of the
+  /// cluster cannot be reached.
   ServerResources(const Catalogue& catalogue_in, ServerSettings settings_in, Clock& clock_in,
                   const SessionMethods& methods);
   ServerResources(const ServerResources&) = delete;
@@ -50,6 +52,7 @@ struct ServerResources {
   Imports imports;
   const std::unique_ptr<Storage> storage;                // null: sessions are in memory only
   const std::unique_ptr<SavedInMemory> saved_in_memory;  // null: saved data is in the storage
+  const std::unique_ptr<ClusterNode> cluster;            // null: this server is no node
   const SessionEnvironment environment;
   // Limits and budget for the recovery of sessions, which must accept all previously accepted
   // sessions.

@@ -9,6 +9,7 @@
 
 #include "core/support/instruction_set.h"
 #include "server/access/access.h"
+#include "server/cluster/cluster_settings.h"
 #include "server/messages/limits.h"
 #include "server/operations/memory_limit.h"
 #include "server/storage/sqlite/storage_settings.h"
@@ -32,6 +33,7 @@ struct ServerSettings {
   AccessSettings access;
   std::string data_folder;  ///< folder for stored sessions; empty: sessions are in memory only
   StorageSettings storage;
+  ClusterSettings cluster;  ///< requires a data folder
   /// Returns the memory of the process, for ServerLimits::max_memory.
   MemoryLimit::Measure measure_memory = process_memory;
   /// Ends the server after the given time for clients, or after the default time. Returns the time.

@@ -42,6 +42,7 @@ bool SessionDirectory::connect(std::shared_ptr<Connection> connection) {
   auto outbox =
       std::make_shared<ClientOutbox>(std::move(connection), limits.max_control_queue_bytes);
   outbox->set_meter(std::make_unique<MessageMeter>(limits, resources_.clock.now()));
+  if (resources_.cluster) outbox->set_gate(*resources_.cluster);
   outbox->set_read_budget(client_read_budget(limits, resources_.clock.now()));
   access_.start(tables_.clients.add(std::move(outbox)));
   return true;
@@ -73,16 +74,31 @@ bool SessionDirectory::is_ready() const {
 }
 
 std::optional<SessionDirectory::Stored> SessionDirectory::store(const std::string& name,
-                                                                const Scene& scene) {
+                                                                const Scene& scene,
+                                                                InstructionSet instructions) {
   if (resources_.storage == nullptr) return {};
   StoredSession session;
   session.name = name;
-  session.instruction_set = to_string(resources_.environment.instructions);
+  session.instruction_set = to_string(instructions);
   session.settings = write_settings({name, admission_.default_role(), false, 0}).dump();
   const std::string params = Json{{"scene", write_scene(scene)}}.dump();
-  const SessionNumber number = resources_.storage->sessions().create(
-      session, {1, 0, 0, 0, std::string(kLoadMethod), params, false});
+  const LogEntry first{1, 0, 0, 0, std::string(kLoadMethod), params, false};
+  if (resources_.cluster) {
+    session.number =
+        resources_.cluster->add_session(name, session.instruction_set, session.settings, first);
+  }
+  const SessionNumber number = resources_.storage->sessions().create(session, first);
   return Stored{number, params.size()};
+}
+
+void SessionDirectory::remove_stored(SessionNumber number) {
+  resources_.storage->sessions().close(number);
+  if (resources_.cluster) resources_.cluster->remove_session(number, [](auto) {});
+}
+
+InstructionSet SessionDirectory::instructions_for_new() const {
+  const InstructionSet own = resources_.environment.instructions;
+  return resources_.cluster ? resources_.cluster->common_instructions(own) : own;
 }
 
 std::variant<SessionId, RpcError> SessionDirectory::create(std::string name, const Scene& scene,
@@ -92,22 +108,30 @@ std::variant<SessionId, RpcError> SessionDirectory::create(std::string name, con
     if (auto error = admission_.refuse_session()) return *std::move(error);
   }
   const SessionEnvironment& environment = resources_.environment;
-  auto simulation = make_simulation(scene, environment, environment.instructions);
+  const InstructionSet instructions = instructions_for_new();
+  auto simulation = make_simulation(scene, environment, instructions);
   if (auto* error = std::get_if<RpcError>(&simulation)) return std::move(*error);
   auto share = resources_.budget.take(resources_of(std::get<Simulation>(simulation)));
   if (const auto* excess = std::get_if<LimitExcess>(&share)) return limit_reached(*excess);
   std::optional<Stored> stored;
   try {
-    stored = store(name, scene);
+    stored = store(name, scene, instructions);
   } catch (const StorageError& error) {
     log_error("a session cannot be stored: {}", error.what());
     return storage_failed(error.kind());
+  } catch (const NatsError& error) {
+    if (error.kind() == NatsError::Kind::conflict) {
+      return invalid_params(
+          {Error{"bad_value", "/name", "must differ from the names of the cluster's sessions"}});
+    }
+    log_error("a session cannot be stored: {}", error.what());
+    return storage_failed(StorageError::Kind::unreachable);
   }
 
   std::unique_lock lock(tables_.mutex);  // not before: the above takes long
   if (auto error = admission_.refuse_session()) {
     lock.unlock();
-    if (stored) resources_.storage->sessions().close(stored->number);
+    if (stored) remove_stored(stored->number);
     return *std::move(error);
   }
   const SessionNumber number = stored ? stored->number : tables_.sessions.next_number();
@@ -118,7 +142,8 @@ std::variant<SessionId, RpcError> SessionDirectory::create(std::string name, con
       environment);
   if (stored) {
     core->history().keep_in(std::make_unique<SessionLog>(
-        *resources_.storage, number, SessionLog::Place{1, 0, false, stored->log_bytes}));
+        *resources_.storage, number, SessionLog::Place{1, 0, false, stored->log_bytes},
+        resources_.cluster ? resources_.cluster->replica_of(number) : nullptr));
   }
   const auto session = std::make_shared<Session>(std::move(core), nullptr, resources_.pool,
                                                  resources_.slow_tick_gate);
@@ -163,6 +188,7 @@ RpcResult SessionDirectory::create_from(const Json& scene, Level level, std::str
     const std::lock_guard lock(tables_.mutex);
     if (auto error = admission_.refuse_session()) return *std::move(error);  // before the reading
   }
+  if (auto created = create_elsewhere(scene, level, name)) return *std::move(created);
   auto read = read_named_scene(scene, level, resources_.environment);
   if (auto* error = std::get_if<RpcError>(&read)) return std::move(*error);
   auto created = create(std::move(name), std::get<Scene>(read), std::move(creator));
@@ -175,10 +201,11 @@ std::vector<SessionDirectory::Listed> SessionDirectory::list(const PendingReply&
   const Client* client = tables_.clients.find(reply);
   std::vector<Listed> list;
   if (client == nullptr) return list;
+  const std::string own_node = resources_.cluster ? resources_.cluster->name() : "";
   for (const auto& [number, session] : tables_.sessions.running()) {
     if (admission_.refuse_access(*client, number)) continue;
     const bool is_closable = admission_.may_close(*client, number);
-    list.push_back({to_id(number), session->summary(), "running", is_closable});
+    list.push_back({to_id(number), session->summary(), "running", is_closable, own_node});
     list.back().summary.clients = tables_.clients.count_in(number);
   }
   for (const auto& [number, absent] : tables_.sessions.absent()) {
@@ -186,8 +213,9 @@ std::vector<SessionDirectory::Listed> SessionDirectory::list(const PendingReply&
     SessionSummary summary;
     summary.name = absent.name;
     list.push_back({to_id(number), std::move(summary), absent.is_lost ? "lost" : "recovering",
-                    absent.is_lost && client->access.role == Role::admin});
+                    absent.is_lost && client->access.role == Role::admin, own_node});
   }
+  add_elsewhere(*client, list);
   return list;
 }
 
@@ -207,7 +235,12 @@ std::optional<RpcError> SessionDirectory::join(PendingReply& reply,
     return {};
   }
   const auto* found = wanted ? tables_.sessions.find(*wanted) : tables_.sessions.first();
-  if (found == nullptr) return no_such_session(id ? *id : "at all", "/session");
+  if (found == nullptr) {
+    bool is_missing = false;
+    auto error = join_elsewhere(reply, wanted, request, is_missing);
+    if (!is_missing) return error;
+    return no_such_session(id ? *id : "at all", "/session");
+  }
   const auto& [number, session] = *found;
   if (auto error = admission_.refuse_access(*client, number)) return error;
   const std::size_t maximum = resources_.settings.limits.max_clients_per_session;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "protocol/scene/level.h"
+#include "server/cluster/cluster_host.h"
 #include "server/directory/access_control.h"
 #include "server/directory/admission.h"
 #include "server/directory/replay_opener.h"
@@ -22,13 +23,13 @@ namespace vat {
 
 /// Sessions and clients of a server, and the assignment of clients to sessions. Thread-safe. See
 /// server/THREADS.md.
-class SessionDirectory {
+class SessionDirectory : private ClusterHost {
  public:
   /// `catalogue` and `clock` must outlive the directory. Throws StorageError if the data folder
   /// cannot be used.
   SessionDirectory(const Catalogue& catalogue, ServerSettings settings, Clock& clock,
                    const SessionMethods& methods);
-  ~SessionDirectory();
+  ~SessionDirectory() override;
   SessionDirectory(const SessionDirectory&) = delete;
   SessionDirectory& operator=(const SessionDirectory&) = delete;
 
@@ -47,8 +48,10 @@ class SessionDirectory {
   /// Returns the sender of a message.
   Sender find_client(ConnectionId id);
 
-  /// Starts the recovery of the stored sessions and returns their number.
-  std::size_t recover() { return recoverer_.start(); }
+  /// Starts the recovery of the stored sessions and returns their number. A node of a cluster
+  /// enters the cluster instead, and returns the number of the cluster's sessions. Throws
+  /// NatsError.
+  std::size_t recover();
   /// Returns false during the recovery of sessions and after drain().
   bool is_ready() const;
 
@@ -64,8 +67,11 @@ class SessionDirectory {
   struct Listed {
     SessionId id;
     SessionSummary summary;
-    const char* state;         ///< "running", "recovering" or "lost"; the last two have only a name
+    /// "running", "recovering", "lost", or "elsewhere" on another node; only the first state has
+    /// more than a name.
+    const char* state;
     bool is_closable = false;  ///< the client may close the session
+    std::string node;          ///< node of the cluster; empty: none, or no cluster
   };
   /// Returns the sessions that the client may join.
   std::vector<Listed> list(const PendingReply& reply) const;
@@ -79,6 +85,8 @@ class SessionDirectory {
   /// Closes a session. The session answers after its work has ended.
   std::optional<RpcError> close(PendingReply& reply, const SessionId& id,
                                 const std::string& reason);
+  /// Hands a session over to another node of the cluster. Answers after its state is stored.
+  std::optional<RpcError> move(PendingReply& reply, const SessionId& id, const std::string& node);
   /// Returns the tick of the client's session at the time of the session's last reply or turn.
   std::optional<std::uint64_t> tick_of(const PendingReply& reply) const;
 
@@ -102,7 +110,32 @@ class SessionDirectory {
     SessionNumber number = 0;
     std::size_t log_bytes = 0;
   };
-  std::optional<Stored> store(const std::string& name, const Scene& scene);
+  std::optional<Stored> store(const std::string& name, const Scene& scene,
+                              InstructionSet instructions);
+  /// Removes a stored session that no client knows.
+  void remove_stored(SessionNumber number);
+  InstructionSet instructions_for_new() const;
+
+  // Implemented in session_directory_cluster.cpp.
+  void start_taken(const StoredSession& session) override;
+  void end_lost(std::uint64_t session, const std::string& url) override;
+  bool stop_for_move(std::uint64_t session, std::function<void()> done) override;
+  void create_for(const std::string& request,
+                  std::function<void(const std::string&)> answer) override;
+  void cluster_changed() override;
+  /// Answers with a session that was created for another node, and a ticket for its owner.
+  void answer_created(const SessionId& id, const std::function<void(const std::string&)>& answer);
+  /// Creates the session on another node of the cluster, if one has more room. Waits.
+  std::optional<RpcResult> create_elsewhere(const Json& scene, Level level,
+                                            const std::string& name);
+  /// Returns the error for a session on another node. If the session has no owner now, the request
+  /// waits for one, and the function returns nothing. `is_missing` is set if there is no session.
+  std::optional<RpcError> join_elsewhere(PendingReply& reply, const std::optional<SessionId>& id,
+                                         JoinRequest& request, bool& is_missing);
+  /// Returns a session of the cluster that this node does not own.
+  std::optional<LocatedSession> find_elsewhere(const std::optional<SessionId>& id) const;
+  void add_elsewhere(const Client& client, std::vector<Listed>& list) const;
+  void tell_moved(SessionNumber number, const std::string& url);
   /// Measures and estimates the memory by use.
   ServerMetrics::Memory memory_use();
   RpcResult create_from(const Json& scene, Level level, std::string name, SessionCreator creator);
@@ -135,7 +168,13 @@ class SessionDirectory {
   const std::unique_ptr<Timer> expiry_timer_;
   SteadyClock::time_point queue_check_{};  // next check of the queues; guarded by the lock
   bool drain_time_is_over_ = false;        // guarded by the lock
-  std::condition_variable_any drained_;    // signals the end of the time or of the last client
+  /// Requests session.join for sessions without an owner; guarded by the lock.
+  struct WaitingJoin {
+    std::optional<SessionId> id;
+    AbsentSession::Waiting join;
+  };
+  std::vector<WaitingJoin> waiting_joins_;
+  std::condition_variable_any drained_;  // signals the end of the time or of the last client
 };
 
 }  // namespace vat

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kShortestExpiryCheck(50);
 constexpr std::chrono::milliseconds kLongestExpiryCheck(15'000);
+constexpr std::chrono::milliseconds kShortestHandOver(5000);  // also without drain time
 constexpr std::chrono::milliseconds kNever = std::chrono::hours(1'000'000);  // a century
 
 /// Calls `post` with a task, and waits until the task is run.
@@ -49,7 +50,11 @@ std::optional<RpcError> SessionDirectory::close(PendingReply& reply, const Sessi
 std::optional<RpcError> SessionDirectory::close_absent(PendingReply& reply, const SessionId& id) {
   VAT_CHECK(tables_.mutex.is_held());
   const auto* absent = tables_.sessions.find_absent(id);
-  if (absent == nullptr) return no_such_session(id, "/session");
+  if (absent == nullptr) {
+    const auto elsewhere = find_elsewhere(id);
+    if (!elsewhere) return no_such_session(id, "/session");
+    return moved_to(id, resources_.cluster->url_of(*elsewhere).value_or(""));
+  }
   const SessionNumber number = absent->first;
   if (auto error = admission_.refuse_role(reply, number)) return error;
   if (!absent->second.is_lost) return not_recovered(id, "recovering");
@@ -69,14 +74,19 @@ void SessionDirectory::forget_stored_then(
     SessionNumber number, std::function<void(std::optional<StorageError::Kind>)> then) {
   VAT_CHECK(tables_.mutex.is_held());
   if (resources_.storage == nullptr || number >= kFirstReplay) return then({});
-  resources_.storage->journal().post(
-      [&storage = *resources_.storage, number] { storage.sessions().close(number); },
-      [this, then = std::move(then)](auto failure) {
-        boost::asio::post(resources_.storage_requests, [this, then, failure] {
-          const std::lock_guard lock(tables_.mutex);
-          then(failure);
-        });
+  auto forget = [this, number, then = std::move(then)](std::optional<StorageError::Kind> refused) {
+    const auto done = [this, then](auto failure) {
+      boost::asio::post(resources_.storage_requests, [this, then, failure] {
+        const std::lock_guard lock(tables_.mutex);
+        then(failure);
       });
+    };
+    if (refused) return done(refused);
+    resources_.storage->journal().post(
+        [&storage = *resources_.storage, number] { storage.sessions().close(number); }, done);
+  };
+  if (resources_.cluster == nullptr) return forget({});
+  resources_.cluster->remove_session(number, std::move(forget));
 }
 
 void SessionDirectory::remove_tokens(const SessionId& id, Session::End end) {
@@ -141,6 +151,11 @@ void SessionDirectory::drain(std::chrono::milliseconds time) {
     drained_.notify_all();
   });
   for (const auto& [connection, client] : tables_.clients.all()) client.outbox->send(event);
+  if (resources_.cluster) {
+    lock.unlock();
+    resources_.cluster->drain(std::max<std::chrono::milliseconds>(time, kShortestHandOver));
+    lock.lock();
+  }
   drained_.wait(lock, [this] { return drain_time_is_over_ || tables_.clients.size() == 0; });
   timer->cancel();
 }
@@ -169,10 +184,12 @@ void SessionDirectory::flush() {
 }
 
 void SessionDirectory::stop() {
+  if (resources_.cluster) resources_.cluster->leave();
   {
     const std::lock_guard lock(tables_.mutex);
     admission_.stop();
     expiry_timer_->cancel();
+    waiting_joins_.clear();
     while (const auto* session = tables_.sessions.first()) {
       close_session(session->first, Session::End::resumable, "the server stops", {});
     }
@@ -184,6 +201,7 @@ void SessionDirectory::stop() {
   resources_.storage_threads.join();
   resources_.frame_threads.join();
   if (resources_.storage) resources_.storage->flush();
+  if (resources_.cluster) resources_.cluster->stop();
 }
 
 std::chrono::milliseconds SessionDirectory::expiry_of(SessionNumber session) const {

@@ -27,13 +27,23 @@ std::size_t SessionRecoverer::start() {
   threads_ = std::make_unique<boost::asio::thread_pool>(
       std::min(stored.size(), resources_.runner.thread_count()));
   const std::size_t count = stored.size();
-  for (const StoredSession& session : stored) {
-    tables_.sessions.add_absent(session.number, session.name);
-  }
-  for (StoredSession& session : stored) {
-    boost::asio::post(*threads_, [this, session = std::move(session)] { recover(session); });
-  }
+  for (StoredSession& session : stored) post(std::move(session));
   return count;
+}
+
+void SessionRecoverer::start(const StoredSession& session) {
+  const std::lock_guard lock(tables_.mutex);
+  if (admission_.stopped() || tables_.sessions.running().contains(session.number)) return;
+  if (threads_ == nullptr) {
+    threads_ = std::make_unique<boost::asio::thread_pool>(resources_.runner.thread_count());
+  }
+  post(session);
+}
+
+void SessionRecoverer::post(StoredSession session) {
+  VAT_CHECK(tables_.mutex.is_held());
+  tables_.sessions.add_absent(session.number, session.name);
+  boost::asio::post(*threads_, [this, session = std::move(session)] { recover(session); });
 }
 
 void SessionRecoverer::join() {
@@ -77,6 +87,7 @@ void SessionRecoverer::finish(const StoredSession& stored, std::shared_ptr<Sessi
   {
     const std::lock_guard lock(tables_.mutex);
     if (admission_.stopped()) return;
+    if (!tables_.sessions.absent().contains(stored.number)) return;  // another node took it
     AbsentSession& absent = tables_.sessions.absent_at(stored.number);
     waiting = std::move(absent.waiting);
     if (session == nullptr) {

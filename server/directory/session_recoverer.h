@@ -21,6 +21,8 @@ class SessionRecoverer {
 
   /// Starts the recovery of all stored sessions and returns their number.
   std::size_t start();
+  /// Starts the recovery of a session that was stored after the start of the server.
+  void start(const StoredSession& session);
   /// Waits for the end of the recoveries. Admission::stop() cancels recoveries.
   void join();
 
@@ -34,7 +36,10 @@ class SessionRecoverer {
   DirectoryTables& tables_;
   const Admission& admission_;
   const Join join_;
-  std::unique_ptr<boost::asio::thread_pool> threads_;  // null: no recovery was started
+  /// Adds the absent session and posts its recovery. The caller must hold the lock.
+  void post(StoredSession session);
+  // Null: no recovery was started. Guarded by the lock.
+  std::unique_ptr<boost::asio::thread_pool> threads_;
 };
 
 }  // namespace vat

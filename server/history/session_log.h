@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "server/history/session_moment.h"
+#include "server/history/session_replica.h"
 #include "server/storage/storage.h"
 #include "server/support/clock.h"
 
@@ -57,8 +58,11 @@ class SessionLog {
     bool needs_checkpoint = false;  ///< the log alone cannot reproduce this state
     std::size_t log_bytes = 0;      ///< size of the stored entries
   };
-  /// The storage must outlive the log.
-  SessionLog(Storage& storage, std::uint64_t session, const Place& place);
+  /// The storage must outlive the log. Without a replica (null), the data folder has the only copy.
+  /// Otherwise the data folder has a working copy for reads: an entry counts as stored if the
+  /// replica has it.
+  SessionLog(Storage& storage, std::uint64_t session, const Place& place,
+             std::shared_ptr<SessionReplica> replica = nullptr);
   ~SessionLog() { storage_.close_log(); }
   SessionLog(const SessionLog&) = delete;
   SessionLog& operator=(const SessionLog&) = delete;
@@ -75,6 +79,12 @@ class SessionLog {
   /// Stores that a recovery must repeat at least the ticks up to this position.
   void reach(std::uint64_t position, Journal::Done done);
   std::uint64_t last() const { return last_; }
+  bool is_replicated() const { return replica_ != nullptr; }
+  /// Stores the progress in the replica, so that another machine knows the participants. Calls
+  /// `done` at once if there is no replica.
+  void store_people(SessionMoment moment, Journal::Done done);
+  /// Returns whether another machine may run the session, so that this one must not.
+  bool is_suspended() const { return replica_ != nullptr && !replica_->is_active(); }
   /// Stores the settings of the session's owner.
   void configure(std::string name, std::string settings, Journal::Done done);
   /// Returns an estimate of the time until an entry is stored, which few entries exceed.
@@ -96,6 +106,8 @@ class SessionLog {
   /// Stores the progress. Also stores the state if it is due: as a checkpoint if the budget admits
   /// one, otherwise as a recent state. Stores a checkpoint in any case if `always` is true.
   void store(SessionMoment moment, SteadyClock::time_point now, bool always = false);
+  /// Stores the progress and a checkpoint, also in the replica, and then calls `done`.
+  void store_all(SessionMoment moment, SteadyClock::time_point now, std::function<void()> done);
   /// Stores the progress and a checkpoint, and then runs `task` on the storage's thread. The
   /// journal contains the progress by then.
   void store_then(SessionMoment moment, SteadyClock::time_point now,
@@ -113,14 +125,24 @@ class SessionLog {
   };
   static constexpr std::uint64_t kSleepingHashInterval = 16;
   enum class Stored { progress, recent_state, checkpoint };
-  static void write_state(Storage& storage, std::uint64_t session, const SessionMoment& moment,
-                          Stored stored, Writing& writing);
+  using Write = std::function<void(Journal::Done done)>;
+  /// Returns a function that writes to the data folder.
+  Write local(Journal::Write write) const;
+  /// Returns a function that writes to the replica, if there is one, and then calls `write`.
+  Write replicated(Write write,
+                   std::function<void(SessionReplica&, Journal::Done)> replicate) const;
+  /// Returns the state, which is not compressed.
+  static Checkpoint write_state(Storage& storage, std::uint64_t session,
+                                const SessionMoment& moment, Stored stored, Writing& writing);
+  static void write_replica(Storage& storage, const SessionMoment& moment, Checkpoint state,
+                            SessionReplica& replica, std::uint64_t mark, bool always);
   static void bound_log(Storage& storage, std::uint64_t session, const SessionMoment& moment,
                         Writing& writing);
   Stored due() const;
 
   Storage& storage_;
   const std::uint64_t session_;
+  const std::shared_ptr<SessionReplica> replica_;
   std::uint64_t last_;
   CheckpointPace pace_;
   // Values of the last stored moment.

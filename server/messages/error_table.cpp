@@ -39,6 +39,8 @@ constexpr ErrorRow kRows[] = {
     {ErrorKind::not_recovered, 1011, "not_recovered",
      "Wait while the session is recovering; for a lost session, the server's log contains the "
      "cause."},
+    {ErrorKind::moved, 1012, "moved",
+     "Connect to data.url and send the request there; session.join accepts the same token."},
 };
 
 constexpr bool is_in_order() {

@@ -23,7 +23,8 @@ enum class ErrorKind : std::uint8_t {
   busy,
   rate_limited,
   storage_failed,
-  not_recovered
+  not_recovered,
+  moved
 };
 
 /// Properties of all errors of a kind. Codes and names do not change. A new type of error gets a

@@ -9,6 +9,7 @@ namespace vat {
 namespace {
 
 constexpr std::size_t kMaxIdBytes = 64;
+constexpr double kRetryAfter = 1;  // [s], about the time until another node takes a session
 constexpr std::size_t kMaxMethodBytes = 64;
 
 bool is_id(const Json& value) {
@@ -125,11 +126,20 @@ RpcError held_by_other(std::uint64_t participant, const std::string& name) {
 }
 
 RpcError storage_failed(StorageError::Kind reason) {
-  const char* message = reason == StorageError::Kind::full ? "the server's disk is full"
-                        : reason == StorageError::Kind::corrupt
-                            ? "the saved data is damaged"
+  const char* message = reason == StorageError::Kind::full      ? "the server's disk is full"
+                        : reason == StorageError::Kind::corrupt ? "the saved data is damaged"
+                        : reason == StorageError::Kind::unreachable
+                            ? "the cluster cannot store commands now"
                             : "the server cannot write its data";
-  return {ErrorKind::storage_failed, message};
+  RpcError error{ErrorKind::storage_failed, message};
+  if (reason == StorageError::Kind::unreachable) error.data["retry_after"] = kRetryAfter;
+  return error;
+}
+
+RpcError moved_to(std::string_view session, std::string_view url) {
+  return {ErrorKind::moved,
+          "the session " + printable(session) + " is at " + printable(url),
+          {{"session", printable(session)}, {"url", url}}};
 }
 
 RpcError not_recovered(std::string_view session, std::string_view state) {

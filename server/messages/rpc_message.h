@@ -61,6 +61,8 @@ RpcError held_by_other(std::uint64_t participant, const std::string& name);
 RpcError storage_failed(StorageError::Kind reason);
 /// Returns an error for a session that is not running. `state` is "recovering" or "lost".
 RpcError not_recovered(std::string_view session, std::string_view state);
+/// Returns an error for a session that another node of the cluster serves at this URL.
+RpcError moved_to(std::string_view session, std::string_view url);
 /// Returns an error for an exceeded rate. `limit` is the name in server.info's `limits`, `maximum`
 /// is the value, and `retry_after` is in [s].
 RpcError rate_limited(std::string_view limit, double maximum, double retry_after);

@@ -1,8 +1,9 @@
-// server.sessions, server.drain
+// server.sessions, server.drain, server.move
 
 #include <chrono>
 #include <cmath>
 
+#include "core/limits.h"
 #include "server/methods/handlers.h"
 #include "server/methods/parts.h"
 
@@ -46,6 +47,16 @@ ServerAction read_server_drain(ObjectReader& params, Errors&) {
   }
   return [time](SessionDirectory& directory, PendingReply&) -> std::optional<RpcResult> {
     return directory.request_drain(time);
+  };
+}
+
+ServerAction read_server_move(ObjectReader& params, Errors&) {
+  const SessionId session = read_session_id(params);
+  const std::string node = params.text("node", kMaxNameLength);
+  return [session, node](SessionDirectory& directory,
+                         PendingReply& reply) -> std::optional<RpcResult> {
+    if (auto error = directory.move(reply, session, node)) return *std::move(error);
+    return {};
   };
 }
 

@@ -109,5 +109,6 @@ ServerAction read_scene_delete(ObjectReader& params, Errors& errors);
 // admin.cpp
 ServerAction read_server_sessions(ObjectReader& params, Errors& errors);
 ServerAction read_server_drain(ObjectReader& params, Errors& errors);
+ServerAction read_server_move(ObjectReader& params, Errors& errors);
 
 }  // namespace vat

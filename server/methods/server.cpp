@@ -94,7 +94,7 @@ std::optional<RpcResult> info(const SessionDirectory& directory) {
   for (const std::string_view name : directory.resources().environment.methods.names) {
     methods.push_back(name);
   }
-  return Json{
+  Json info{
       {"name", "vat"},
       {"version", directory.resources().settings.version},
       {"protocol", "vat.v1"},
@@ -105,6 +105,11 @@ std::optional<RpcResult> info(const SessionDirectory& directory) {
       {"limits", describe_limits(directory.resources().settings.limits)},
       {"methods", std::move(methods)},
   };
+  if (const auto& cluster = directory.resources().cluster) {
+    info["node"] = cluster->name();
+    info["nodes"] = cluster->urls();
+  }
+  return info;
 }
 
 RpcResult list_scenes(const ServerResources& resources) {

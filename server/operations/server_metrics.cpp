@@ -10,8 +10,8 @@ namespace vat {
 namespace {
 
 /// Close codes of PROTOCOL.md. Others are counted together, because clients may send any code.
-constexpr std::uint16_t kCloseCodes[] = {1000, 1001, 1002, 1005, 1006, 1007, 1009,
-                                         1011, 1013, 4001, 4003, 4008, 4009, 4010};
+constexpr std::uint16_t kCloseCodes[] = {1000, 1001, 1002, 1005, 1006, 1007, 1009, 1011,
+                                         1013, 4001, 4003, 4008, 4009, 4010, 4012};
 
 void append_head(std::string& text, const char* name, const char* type, const char* help) {
   text += std::string("# HELP ") + name + ' ' + help + "\n# TYPE " + name + ' ' + type + '\n';

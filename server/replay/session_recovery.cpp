@@ -1,5 +1,6 @@
 #include "server/replay/session_recovery.h"
 
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <utility>
@@ -117,13 +118,21 @@ void SessionRecovery::repeat_log(SessionCore& core) {
 
 void SessionRecovery::finish(SessionCore& core, const SessionEnvironment& environment) {
   core.set_environment(environment);
-  const std::uint64_t last = storage_.sessions().last_sequence(stored_.number);
+  // The log may lack all entries before the state at which the recovery began.
+  const std::uint64_t last =
+      std::max(storage_.sessions().last_sequence(stored_.number), core.history().sequence());
   const std::uint64_t position = core.run().position();
   storage_.checkpoints().drop_hashes(stored_.number, position);
+  const auto replica =
+      environment.replicas == nullptr ? nullptr : environment.replicas->replica_of(stored_.number);
+  if (replica != nullptr) {
+    for (const std::uint64_t sequence : refused_) replica->refuse(sequence);
+  }
   core.history().keep_in(std::make_unique<SessionLog>(
       storage_, stored_.number,
       SessionLog::Place{last, position, core.history().divergence().has_value(),
-                        storage_.sessions().log_bytes(stored_.number)}));
+                        storage_.sessions().log_bytes(stored_.number)},
+      replica));
   end_recovery(core, environment.clock.now());
 }
 
@@ -165,6 +174,7 @@ void SessionRecovery::repeat_last_entry(SessionCore& core, const LogEntry& entry
   } catch (const Diverged& refusal) {
     log_info("session s{}: {}, as it was when the server ended", stored_.number, refusal.what());
     storage_.sessions().refuse(stored_.number, entry.sequence);
+    refused_.push_back(entry.sequence);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "server/session/core/session_core.h"
 #include "server/storage/storage.h"
@@ -54,6 +55,7 @@ class SessionRecovery {
   const std::atomic<bool>& cancelled_;
   InstructionSet instructions_ = InstructionSet::baseline;
   std::optional<Start> start_;
+  std::vector<std::uint64_t> refused_;  // sequences of entries that were not marked as refused
 };
 
 }  // namespace vat

@@ -80,6 +80,7 @@ constexpr auto kMethods = [] {
     {"scene.delete",         controller, connection,  control, kNoLog, read_scene_delete},
     {"server.sessions",      admin,      connection,  query,   kNoLog, read_server_sessions},
     {"server.drain",         admin,      connection,  control, kNoLog, read_server_drain},
+    {"server.move",          admin,      connection,  control, kNoLog, read_server_move},
   });
 }();
 // clang-format on

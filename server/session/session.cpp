@@ -54,6 +54,30 @@ void Session::close(End end, std::optional<PendingReply> reply) {
   schedule(&Session::close_turn);
 }
 
+void Session::hand_over(std::function<void()> done) {
+  {
+    const std::lock_guard lock(mutex_);
+    end_ = End::moved;
+    handed_over_ = std::move(done);
+  }
+  schedule(&Session::hand_over_turn);
+}
+
+void Session::hand_over_turn() {
+  std::function<void()> done;
+  {
+    const std::lock_guard lock(mutex_);
+    done.swap(handed_over_);
+  }
+  SessionLog* const log = core_->history().log();
+  if (log == nullptr || core_->history().divergence()) {
+    close_turn();
+    return done();
+  }
+  log->store_all(core_->history().moment(), clock_.now(), std::move(done));
+  close_turn();
+}
+
 void Session::join(PendingReply reply, std::uint64_t membership, JoinRequest request,
                    std::function<void()> undo) {
   add({std::move(reply), SessionInbox::Join{membership, std::move(request), std::move(undo)}});
@@ -83,8 +107,11 @@ void Session::add(Item item) {
       return;
     case SessionInbox::Added::first:
       return schedule(&Session::inbox_turn);
-    case SessionInbox::Added::refused:
-      return item.reply.answer(no_such_session(id()));
+    case SessionInbox::Added::refused: {
+      const std::lock_guard lock(mutex_);
+      if (end_ != End::moved) item.reply.answer(no_such_session(id()));
+      return;
+    }
   }
 }
 
@@ -328,6 +355,7 @@ void Session::close_turn() {
     closing.swap(closing_);
   }
   end_log(end);
+  if (end == End::moved) return drop_requests();
   const RpcError error = no_such_session(id());
   if (seek_) {
     for (PendingReply& reply : *seek_) reply.answer(error);
@@ -345,10 +373,23 @@ void Session::close_turn() {
   }
   for (Item& item : items) item.reply.answer(error);
   reads_.refuse_all(error);
+  end_core();
+  if (closing) closing->answer(Json{{"tick", core_->run().tick()}});
+}
+
+// The event session.moved ends the requests of the session's clients, without replies.
+void Session::drop_requests() {
+  ending_steps_.clear();
+  steps_.clear();
+  put_back_.clear();
+  pointers_.take();
+  end_core();
+}
+
+void Session::end_core() {
   core_->set_playback(nullptr);
   playback_.reset();
   core_->run().end();
-  if (closing) closing->answer(Json{{"tick", core_->run().tick()}});
 }
 
 }  // namespace vat

@@ -49,10 +49,14 @@ class Session : public std::enable_shared_from_this<Session> {
   enum class End {
     closed,     ///< permanently closed
     resumable,  ///< recovered at the next start of the server, if stored
+    moved,      ///< continued by another machine from the replica; nothing is stored
   };
   /// Ends the session asynchronously. Answers waiting requests with no_such_session, and then
   /// answers `reply`, if present, with the last tick. May be called once.
   void close(End end, std::optional<PendingReply> reply);
+  /// Stores the session's state, also in the replica, ends the session as close(End::moved), and
+  /// then calls `done`. close() must not be called. Must be called once.
+  void hand_over(std::function<void()> done);
 
   /// Adds a participant. The reply contains the participant and the session's description. Calls
   /// `undo` before an error reply.
@@ -113,6 +117,8 @@ class Session : public std::enable_shared_from_this<Session> {
   void execute(Item item);
   void execute_stored(ParticipantNumber participant, PendingReply reply, SessionCommand command);
   void execute_join(PendingReply reply, const SessionInbox::Join& join);
+  void answer_join(PendingReply& reply, ParticipantNumber number, const std::string& resume,
+                   bool resumed);
   void execute_leave(PendingReply reply);
   void execute_disconnect(const PendingReply& reply);
   void execute_command(PendingReply reply, SessionCommand command);
@@ -127,6 +133,9 @@ class Session : public std::enable_shared_from_this<Session> {
   /// false if the caller must wait too.
   bool execute_pointers();
   void close_turn();
+  void hand_over_turn();
+  void drop_requests();
+  void end_core();
 
   // Jobs of control.step, implemented in session_steps.cpp.
   StepJob* find_job(ConnectionId client);
@@ -167,6 +176,8 @@ class Session : public std::enable_shared_from_this<Session> {
   /// Logs and executes departures and ends of grabs that are due, and then calls `then`.
   void end_departures(const std::function<void()>& then);
   void store_settings(PendingReply reply, SessionSettings settings);
+  /// Stores the participants in the replica, if there is one, and then calls `then`.
+  void store_people_then(std::function<void(const Failure&)> then);
   /// Returns the time before a tick in which no write to the log should begin.
   SteadyClock::duration write_time() const;
   bool is_tick_near() const;
@@ -210,6 +221,7 @@ class Session : public std::enable_shared_from_this<Session> {
 
   mutable std::mutex mutex_;             // guards closing_, end_ and summary_
   std::optional<PendingReply> closing_;  // answered by the last turn
+  std::function<void()> handed_over_;    // called after hand_over()
   End end_ = End::resumable;
   SessionSummary summary_;
 

@@ -20,21 +20,37 @@ void Session::execute_join(PendingReply reply, const SessionInbox::Join& join) {
   // First, because the connection may have been another participant's.
   end_departures([this, waiting, number = result.participant.number, resume = result.resume,
                   resumed = result.resumed] {
-    update_summary();  // before the answer, as below: lists then show what was done
-    const Participant* participant = core_->participants().find(number);
-    VAT_CHECK(participant != nullptr);
-    const Json content{{"tick", core_->run().tick()},
-                       {"session", id()},
-                       {"participant", number},
-                       {"name", participant->name},
-                       {"role", to_string(participant->role)},
-                       {"resume", resume},
-                       {"resumed", resumed},
-                       {"settings", core_->people().describe_settings()},
-                       {"participants", describe_participants(core_->participants())}};
-    const auto description = core_->notifier().description();
-    waiting->answer_text(begin_object(content, "description") + description.begin, description.end);
+    store_people_then([this, waiting, number, resume, resumed](const Failure& failure) {
+      if (failure) return waiting->answer(*failure);
+      answer_join(*waiting, number, resume, resumed);
+    });
   });
+}
+
+void Session::store_people_then(std::function<void(const Failure&)> then) {
+  SessionLog* const log = core_->history().log();
+  if (log == nullptr || !log->is_replicated()) return then({});
+  write_then([moment = core_->history().moment()](
+                 SessionLog& to, Journal::Done done) { to.store_people(moment, std::move(done)); },
+             std::move(then));
+}
+
+void Session::answer_join(PendingReply& reply, ParticipantNumber number, const std::string& resume,
+                          bool resumed) {
+  update_summary();  // before the answer, as below: lists then show what was done
+  const Participant* participant = core_->participants().find(number);
+  VAT_CHECK(participant != nullptr);
+  const Json content{{"tick", core_->run().tick()},
+                     {"session", id()},
+                     {"participant", number},
+                     {"name", participant->name},
+                     {"role", to_string(participant->role)},
+                     {"resume", resume},
+                     {"resumed", resumed},
+                     {"settings", core_->people().describe_settings()},
+                     {"participants", describe_participants(core_->participants())}};
+  const auto description = core_->notifier().description();
+  reply.answer_text(begin_object(content, "description") + description.begin, description.end);
 }
 
 void Session::execute_leave(PendingReply reply) {

@@ -159,7 +159,9 @@ void Session::note_emptiness(SteadyClock::time_point now) {
 
 void Session::follow_clock() {
   const SessionClock& clock = core_->clock();
-  const auto wanted = clock.playing() && !hibernating_ && !seek_
+  const SessionLog* const log = core_->history().log();
+  const bool is_suspended = log != nullptr && log->is_suspended();
+  const auto wanted = clock.playing() && !hibernating_ && !seek_ && !is_suspended
                           ? tick_period(core_->run().tick_seconds(), clock.speed())
                           : SteadyClock::duration::zero();
   if (wanted == period_) return;
@@ -236,7 +238,7 @@ void Session::end_log(End end) {
   if (log == nullptr) return;
   if (end == End::closed) {
     log->close();
-  } else if (!history.divergence()) {
+  } else if (end == End::resumable && !history.divergence()) {
     log->store(history.moment(), clock_.now(), true);
   }
 }

@@ -60,6 +60,35 @@ std::string check_instructions(const std::string& name) {
   return usable ? std::string() : usable.errors().front().message;
 }
 
+bool has_only(std::string_view text, std::string_view characters) {
+  return text.find_first_not_of(characters) == std::string_view::npos;
+}
+
+constexpr std::string_view kUrlCharacters =
+    "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789.-_:[]@/";
+
+std::string check_nats_url(const std::string& url) {
+  const bool has_scheme = url.starts_with("nats://") || url.starts_with("tls://");
+  if (has_scheme && !url.ends_with("/") && has_only(url, kUrlCharacters)) return {};
+  return "must be URLs separated by commas, such as nats://127.0.0.1:4222 or "
+         "tls://nats.example:4222";
+}
+
+std::string check_node(const std::string& name) {
+  constexpr std::size_t kMaxNodeName = 64;
+  constexpr std::string_view kInNames =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_";
+  if (name.size() <= kMaxNodeName && has_only(name, kInNames)) return {};
+  return "must have 1 to 64 letters, digits, - and _";
+}
+
+std::string check_public_url(const std::string& url) {
+  const bool has_scheme = url.starts_with("ws://") || url.starts_with("wss://");
+  if (url.empty() || (has_scheme && !url.ends_with("//") && has_only(url, kUrlCharacters)))
+    return {};
+  return "must be a WebSocket URL, such as wss://a.example/ws";
+}
+
 Setting shown_as(Setting setting, std::string shown_default) {
   setting.shown_default = std::move(shown_default);
   return setting;
@@ -299,6 +328,29 @@ std::vector<Setting> storage_group(ServeSettings& s) {
   };
 }
 
+std::vector<Setting> cluster_group(ClusterSettings& cluster) {
+  return {
+      list_setting("cluster", cluster.servers, "URLS",
+                   "NATS servers of the cluster that this server joins as a node: "
+                   "nats://a:4222,nats://b:4222",
+                   check_nats_url),
+      text_setting("node", cluster.node, "NAME",
+                   "Name of this node, unique in the cluster: letters, digits, - and _",
+                   check_node),
+      text_setting("public_url", cluster.public_url, "URL",
+                   "URL at which clients of other nodes reach this node: wss://a.example/ws",
+                   check_public_url),
+      text_setting("cluster_tls_ca", cluster.tls_ca, "FILE",
+                   "Certificates in PEM that the NATS servers' certificates must lead to"),
+      text_setting("cluster_tls_certificate", cluster.tls_certificate, "FILE",
+                   "Certificate of this node for the NATS servers, in PEM"),
+      text_setting("cluster_tls_key", cluster.tls_key, "FILE",
+                   "Private key of cluster_tls_certificate, in PEM"),
+      text_setting("cluster_credentials", cluster.credentials, "FILE",
+                   "Credentials of this node's NATS user"),
+  };
+}
+
 }  // namespace
 
 std::vector<Setting> serve_settings(ServeSettings& target) {
@@ -306,6 +358,7 @@ std::vector<Setting> serve_settings(ServeSettings& target) {
   add_group(all, "Server", server_group(target));
   add_group(all, "Access", access_group(target));
   add_group(all, "Storage", storage_group(target));
+  add_group(all, "Cluster", cluster_group(target.cluster));
   add_group(all, "Limits of connections", connection_limits(target.limits));
   add_group(all, "Rate limits of a connection", rate_limits(target.limits));
   add_group(all, "Limits of sessions", session_limits(target.limits));

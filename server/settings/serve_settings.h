@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "server/cluster/cluster_settings.h"
 #include "server/messages/limits.h"
 #include "server/settings/setting.h"
 #include "server/storage/sqlite/storage_settings.h"
@@ -37,6 +38,7 @@ struct ServeSettings {
   std::string data = "none";  ///< folder for stored sessions, or "none"
   StorageSettings storage;
   std::string durability = "power";  ///< "power" or "process"
+  ClusterSettings cluster;
 };
 
 /// Returns the table of all settings. Options, environment variables, members of a configuration

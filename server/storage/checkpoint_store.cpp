@@ -236,6 +236,17 @@ void CheckpointStore::drop_hashes(std::uint64_t session, std::uint64_t behind) {
   transaction.commit();
 }
 
+void CheckpointStore::remove(std::uint64_t session) {
+  const std::lock_guard lock(mutex_);
+  remove_locked(session);
+}
+
+void CheckpointStore::remove_locked(std::uint64_t session) {
+  VAT_CHECK(mutex_.is_held());
+  database_.prepare("DELETE FROM checkpoints WHERE session = ?").bind(0, session).run();
+  database_.prepare("DELETE FROM hashes WHERE session = ?").bind(0, session).run();
+}
+
 void CheckpointStore::keep_only(const std::vector<std::uint64_t>& sessions) {
   const std::lock_guard lock(mutex_);
   std::vector<std::uint64_t> gone;
@@ -245,10 +256,7 @@ void CheckpointStore::keep_only(const std::vector<std::uint64_t>& sessions) {
     const std::uint64_t session = query.count(0);
     if (std::ranges::find(sessions, session) == sessions.end()) gone.push_back(session);
   }
-  for (const std::uint64_t session : gone) {
-    database_.prepare("DELETE FROM checkpoints WHERE session = ?").bind(0, session).run();
-    database_.prepare("DELETE FROM hashes WHERE session = ?").bind(0, session).run();
-  }
+  for (const std::uint64_t session : gone) remove_locked(session);
   while (!gone.empty() && database_.compact()) {
   }
 }

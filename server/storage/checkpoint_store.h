@@ -71,6 +71,8 @@ class CheckpointStore {
   void drop_hashes(std::uint64_t session, std::uint64_t behind);
   static constexpr std::size_t kMaxHashes = 2'000'000;  ///< eleven hours at 50 ticks per second
 
+  /// Removes the checkpoints and hashes of the session.
+  void remove(std::uint64_t session);
   /// Removes the checkpoints and hashes of all other sessions, and frees their space on the disk.
   void keep_only(const std::vector<std::uint64_t>& sessions);
 
@@ -83,6 +85,7 @@ class CheckpointStore {
   /// Removes the checkpoint of the session whose removal causes the smallest gap.
   void remove_redundant(std::uint64_t session);
   void remove_row(std::uint64_t row);
+  void remove_locked(std::uint64_t session);
 
   const std::size_t session_bytes_;
   const std::size_t bytes_in_all_;

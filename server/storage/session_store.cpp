@@ -61,15 +61,40 @@ std::uint64_t SessionStore::create(const StoredSession& session, const LogEntry&
   VAT_CHECK(first.sequence == 1);
   const std::lock_guard lock(mutex_);
   Transaction transaction(database_);
-  database_.prepare("INSERT INTO sessions (name, instruction_set, settings) VALUES (?, ?, ?)")
-      .bind(0, session.name)
-      .bind(1, session.instruction_set)
-      .bind(2, session.settings)
-      .run();
-  const auto number = static_cast<std::uint64_t>(database_.last_row());
+  const std::uint64_t number = insert(session);
   insert(number, first);
   transaction.commit();
   return number;
+}
+
+std::uint64_t SessionStore::insert(const StoredSession& session) {
+  Statement row = database_.prepare(
+      "INSERT INTO sessions (number, name, instruction_set, settings, reached)"
+      " VALUES (?, ?, ?, ?, ?)");
+  if (session.number > 0) row.bind(0, session.number);  // otherwise NULL, which chooses one
+  row.bind(1, session.name)
+      .bind(2, session.instruction_set)
+      .bind(3, session.settings)
+      .bind(4, session.reached)
+      .run();
+  return static_cast<std::uint64_t>(database_.last_row());
+}
+
+void SessionStore::replace(const StoredSession& session, std::span<const LogEntry> entries) {
+  VAT_CHECK(session.number > 0);
+  const std::lock_guard lock(mutex_);
+  Transaction transaction(database_);
+  for (const char* const deletion :
+       {"DELETE FROM log WHERE session = ?", "DELETE FROM sessions WHERE number = ?"}) {
+    database_.prepare(deletion).bind(0, session.number).run();
+  }
+  insert(session);
+  for (const LogEntry& entry : entries) {
+    insert(session.number, entry);
+    if (entry.refused) refuse(session.number, entry.sequence);
+  }
+  if (session.progress) write_progress(session.number, *session.progress);
+  transaction.commit();
 }
 
 std::vector<StoredSession> SessionStore::sessions() {

@@ -46,9 +46,11 @@ class SessionStore {
   /// Returns the database of the sessions, which other stores share.
   const std::shared_ptr<MainDatabase>& main() const { return main_; }
 
-  /// Creates a session with its first log entry (sequence 1). Returns the number of the session.
-  /// Numbers are not used again.
+  /// Creates a session with its first log entry (sequence 1). Returns the number of the session,
+  /// which is chosen if it is 0. Chosen numbers are not used again.
   std::uint64_t create(const StoredSession& session, const LogEntry& first);
+  /// Writes a session with its log, and replaces the stored session with this number, if any.
+  void replace(const StoredSession& session, std::span<const LogEntry> entries);
   /// Returns all open sessions, in ascending order of their numbers.
   std::vector<StoredSession> sessions();
   void configure(std::uint64_t session, const std::string& name, const std::string& settings);
@@ -84,7 +86,8 @@ class SessionStore {
   void limit_pages(std::size_t pages);
 
  private:
-  /// The caller must hold the mutex.
+  // The caller must hold the mutex for these functions.
+  std::uint64_t insert(const StoredSession& session);
   void insert(std::uint64_t session, const LogEntry& entry);
   /// Frees some of the unused space. Returns false if there is no more.
   bool compact_some();

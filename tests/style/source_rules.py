@@ -20,7 +20,7 @@ LAYERS = {
     "server/": (
         ("core/", "protocol/", "server/"),
         ("CLI/", "Eigen/", "boost/", "fmt/", "nlohmann/", "spdlog/", "websocketpp/", "unistd.h", "sys/",
-         "fcntl.h", "malloc.h", "poll.h", "openssl/", "lz4.h", "sqlite3.h", "zstd.h"),
+         "fcntl.h", "malloc.h", "nats/", "poll.h", "openssl/", "lz4.h", "sqlite3.h", "zstd.h"),
     ),
 }
 # core/threads runs the blocks of a step, whose results do not depend on it.
@@ -28,7 +28,7 @@ NOT_IN_CORE = {"chrono", "ctime", "iostream", "fstream", "filesystem", "random",
 ONLY_IN = {
     "CL/": "core/device/opencl/", "dlfcn.h": "core/device/opencl/", "sqlite3.h": "server/storage/",
     "websocketpp/": "server/transport/", "zstd.h": "server/storage/",
-    "lz4.h": "server/output/", "pybind11/": "protocol/python/native/",
+    "lz4.h": "server/output/", "nats/": "server/nats/", "pybind11/": "protocol/python/native/",
     "boost/": ("protocol/client/connection/", "server/"),
     "openssl/": ("protocol/client/connection/", "server/"),
 }
@@ -41,7 +41,7 @@ NOT_DETERMINISTIC = re.compile(
 # The server reads the time from its Clock, which tests control. The cost of work is measured by
 # CostClock.
 CLOCKED = tuple(f"server/{folder}/" for folder in
-                ("access", "clients", "directory", "frames", "history", "http", "messages", "methods",
+                ("access", "clients", "cluster", "directory", "frames", "history", "http", "messages", "methods",
                  "people", "replay", "rpc", "session", "storage"))
 SYSTEM_TIME = re.compile(r"\b(?:steady_clock|system_clock|SteadyClock)::now\b|\bsteady_timer\b")
 # Tests wait for events. tests/bench generates load for a given time.

@@ -42,6 +42,9 @@ export function defaultRetryDelayMs(attempt: number): number {
   return Math.min(500 * 2 ** (attempt - 1), 8000) * (1 + Math.random() / 4);
 }
 
+const kMoved = 'the session moves to another server';
+/** The nodes of a cluster may disagree about the owner of a session for some time. */
+const kMaxRedirects = 4;
 const kRefused = `the server does not support ${kSubprotocol}; reload the page`;
 
 /** A connection to the server that reopens after a failure. */
@@ -54,12 +57,20 @@ export class Connection {
   /** Attempts since the last event or frame. Replies do not count, because they can be refusals to join. */
   private attempts = 0;
   private retryMs = 0;
+  /** The URL of the next attempt. */
+  private url: string;
+  /** The URLs of a cluster's nodes. */
+  private nodes: readonly string[] = [];
+  private nextNode = 0;
+  /** Redirections since the last event or frame. */
+  private redirects = 0;
   private timer: ReturnType<typeof setTimeout> | undefined;
 
   constructor(
     private readonly options: ConnectionOptions,
     private readonly handlers: ConnectionHandlers,
   ) {
+    this.url = options.url;
     this.timeoutMs = options.timeoutMs ?? 10_000;
     this.retryDelayMs = options.retryDelayMs ?? defaultRetryDelayMs;
     this.pending = new PendingRequests(this.timeoutMs);
@@ -69,7 +80,7 @@ export class Connection {
   open(): void {
     this.drop();
     this.handlers.onState?.({ name: 'connecting' });
-    const socket = new this.options.socket(this.options.url, kSubprotocol);
+    const socket = new this.options.socket(this.url, kSubprotocol);
     socket.binaryType = 'arraybuffer';
     socket.onopen = () => this.handleOpen();
     socket.onmessage = (event: { data: unknown }) => this.handleMessage(event.data);
@@ -89,6 +100,19 @@ export class Connection {
   /** Closes an open connection that does not respond, and reconnects after a delay. */
   restart(reason: string): void {
     if (this.isOpen) this.retryLater(reason);
+  }
+
+  /** After the loss of a connection, the client tries these URLs in turn. */
+  useNodes(urls: readonly string[]): void {
+    this.nodes = urls;
+  }
+
+  /** Connects to another URL, at once for the first times. Without a URL, reconnects after a delay. */
+  redirect(url: string): void {
+    if (url === '') return this.restart(kMoved);
+    if (++this.redirects > kMaxRedirects) this.retryLater(kMoved);
+    this.url = url; // retryLater() has chosen another one
+    if (this.redirects <= kMaxRedirects) this.open();
   }
 
   /** Rejects with a RequestError if the server refuses, does not reply in time, or is not connected. */
@@ -141,7 +165,7 @@ export class Connection {
 
   private handleMessage(data: unknown): void {
     if (data instanceof ArrayBuffer) {
-      this.attempts = 0;
+      this.attempts = this.redirects = 0;
       this.handlers.onFrame?.(data);
     } else if (typeof data === 'string') {
       this.handleText(data);
@@ -157,6 +181,7 @@ export class Connection {
     } else if (typeof message.method === 'string') {
       if (!isEventName(message.method)) return; // an event of a later version
       this.attempts = 0;
+      if (message.method !== 'session.moved') this.redirects = 0;
       this.handlers.onEvent?.({ event: message.method, params: message.params } as Event);
     } else if (!this.pending.settle(message as Reply)) {
       this.reportStrayReply(message as Reply);
@@ -173,6 +198,8 @@ export class Connection {
   private retryLater(reason: string): void {
     this.drop(reason);
     this.retryMs = this.retryDelayMs(++this.attempts);
+    if (this.nodes.length > 1)
+      this.url = this.nodes[this.nextNode++ % this.nodes.length] ?? this.url;
     this.timer = setTimeout(() => this.open(), this.retryMs);
     this.handlers.onState?.({ name: 'waiting', reason, retryMs: this.retryMs });
   }

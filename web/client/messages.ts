@@ -71,6 +71,8 @@ export interface ErrorData {
   path?: string;
   limit?: string;
   maximum?: number;
+  /** The URL of the node with the session, if the session has moved. */
+  url?: string;
   /** For rate-limited requests: the delay until a retry can succeed [s]. */
   retry_after?: number;
   errors?: { code: string; path: string; message: string }[];

@@ -81,7 +81,8 @@ export type ReplyError =
   | Busy
   | RateLimited
   | StorageFailed
-  | NotRecovered;
+  | NotRecovered
+  | Moved;
 /** Body, particle number, other body, particle number, and so on */
 export type ConnectedPairs = number[];
 
@@ -389,6 +390,8 @@ export interface StorageFailed {
   data: {
     kind: 'storage_failed';
     hint: Hint;
+    /** Time after which a retry may succeed, if a cluster cannot store commands [s] */
+    retry_after?: number;
   };
 }
 
@@ -399,6 +402,18 @@ export interface NotRecovered {
     kind: 'not_recovered';
     hint: Hint;
     state: 'recovering' | 'lost';
+  };
+}
+
+export interface Moved {
+  code: 1012;
+  message: string;
+  data: {
+    kind: 'moved';
+    hint: Hint;
+    session: SessionId;
+    /** WebSocket URL of the node with the session; empty: not known yet */
+    url: string;
   };
 }
 /** Sent twice per second and after each change */
@@ -451,6 +466,12 @@ export interface SessionClosed {
   session: SessionId;
   reason: string;
 }
+/** Another node of the cluster continues the session. Requests without a reply were not executed */
+export interface SessionMoved {
+  session: SessionId;
+  /** WebSocket URL of the node; empty: not known yet */
+  url: string;
+}
 /** Added, changed and removed participants; sent at most ten times per second */
 export interface PresenceChanged {
   participants: Participant[];
@@ -461,7 +482,7 @@ export interface SessionStorage {
   /** True while the server rejects commands with storage_failed */
   failing: boolean;
   /** Only if failing */
-  reason?: 'full' | 'read_only' | 'corrupt' | 'newer' | 'locked' | 'failed';
+  reason?: 'full' | 'read_only' | 'corrupt' | 'newer' | 'locked' | 'failed' | 'unreachable';
 }
 /** The server has ended a grab that was not moved */
 export interface GrabEnded {
@@ -725,6 +746,10 @@ export interface ServerInfoResult {
   storage: 'folder' | 'memory';
   /** The server's clock [s since 1970] */
   time: number;
+  /** Name of the server as a node of a cluster; absent: no cluster */
+  node?: string;
+  /** WebSocket URLs of the cluster's nodes; absent: no cluster */
+  nodes?: string[];
   /** Every limit by its name, as in the error limit_reached */
   limits: {
     [k: string]: number;
@@ -741,7 +766,9 @@ export interface WatchedSession {
   session: SessionId;
   name: string;
   /** If the session is not running, only the name is known */
-  state: 'running' | 'recovering' | 'lost';
+  state: 'running' | 'recovering' | 'lost' | 'elsewhere';
+  /** Node of the cluster with the session; absent: no cluster */
+  node?: string;
   /** A replay shows a recording */
   kind: 'live' | 'replay';
   scene: string;
@@ -774,6 +801,18 @@ export interface ServerDrainResult {
   /** Period for clients [s] */
   seconds: number;
 }
+/** Moves a session to another node of the cluster */
+export interface ServerMoveParams {
+  session: SessionId;
+  /** Name of the node that continues the session */
+  node: string;
+}
+
+export interface ServerMoveResult {
+  session: SessionId;
+  /** WebSocket URL of the node */
+  url: string;
+}
 /** Creates a session, which plays; the caller does not join it */
 export interface SessionCreateParams {
   name: Name;
@@ -784,6 +823,8 @@ export interface SessionCreateParams {
 export interface SessionCreateResult {
   tick: Tick;
   session: SessionId;
+  /** Token of the owner for access.enter; present if another node of a cluster has created the session */
+  ticket?: string;
 }
 
 export interface SessionListResult {
@@ -794,7 +835,9 @@ export interface SessionEntry {
   session: SessionId;
   name: string;
   /** If the session is not running, only the name is known */
-  state: 'running' | 'recovering' | 'lost';
+  state: 'running' | 'recovering' | 'lost' | 'elsewhere';
+  /** Node of the cluster with the session; absent: no cluster */
+  node?: string;
   /** A replay shows a recording */
   kind: 'live' | 'replay';
   scene: string;
@@ -1148,6 +1191,7 @@ export interface Methods {
   'server.info': { params: Nothing; result: ServerInfoResult };
   'server.sessions': { params: Nothing; result: ServerSessionsResult };
   'server.drain': { params: ServerDrainParams; result: ServerDrainResult };
+  'server.move': { params: ServerMoveParams; result: ServerMoveResult };
   'session.create': { params: SessionCreateParams; result: SessionCreateResult };
   'session.list': { params: Nothing; result: SessionListResult };
   'session.join': { params: SessionJoinParams; result: SessionJoinResult };
@@ -1187,6 +1231,7 @@ export interface Events {
   'replay.diverged': Divergence;
   'replay.people': ReplayPeople;
   'session.closed': SessionClosed;
+  'session.moved': SessionMoved;
   'session.configured': Settings;
   'presence.changed': PresenceChanged;
   'session.storage': SessionStorage;
@@ -1205,6 +1250,7 @@ export const kEventNames = [
   'replay.diverged',
   'replay.people',
   'session.closed',
+  'session.moved',
   'session.configured',
   'presence.changed',
   'session.storage',

@@ -213,6 +213,10 @@ export class Session {
   /** Reconnects after the failure of a request that joining or measuring requires. */
   private restart(error: unknown): void {
     if (!(error instanceof RequestError)) throw error;
+    if (error.kind === 'moved') {
+      this.connection.redirect(error.data?.url ?? '');
+      return;
+    }
     // The text for users omits the method. Without a connection, restart() does nothing.
     this.connection.restart(error.kind === 'timed_out' ? kSilent : error.message);
   }
@@ -220,6 +224,7 @@ export class Session {
   private async measureClock(): Promise<Result<'server.info'>> {
     const sent = this.options.now();
     const info = await this.request('server.info', {});
+    this.connection.useNodes(info.nodes ?? []);
     this.clock.add(sent, this.options.now(), info.time);
     if (this.clock.seconds !== undefined) this.handlers.onClockOffset?.(this.clock.seconds);
     clearTimeout(this.clockTimer);
@@ -234,6 +239,7 @@ export class Session {
     if (event.event === 'session.description') this.describe(event.params);
     else this.handlers.onEvent?.(event);
     if (event.event === 'session.closed') void this.enter(); // the server can have another session
+    if (event.event === 'session.moved') this.connection.redirect(event.params.url);
   }
 
   private handleFrame(bytes: ArrayBuffer): void {

@@ -28,6 +28,7 @@ const kCloseReasons: Readonly<Record<number, string>> = {
   4008: 'this client is too slow',
   4009: 'this client sends too much',
   4010: 'this participant continues in another window',
+  4012: 'the session moves to another server',
 };
 
 /** Codes after which the client does not reconnect. */

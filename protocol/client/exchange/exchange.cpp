@@ -15,7 +15,7 @@ namespace {
 constexpr JsonLimits kReplyLimits{
     .bytes = std::size_t{64} << 20, .depth = 64, .values = 50'000'000};
 /// Texts for the close codes of protocol/PROTOCOL.md.
-constexpr std::array<std::pair<std::uint16_t, const char*>, 10> kCloseReasons{{
+constexpr std::array<std::pair<std::uint16_t, const char*>, 11> kCloseReasons{{
     {1001, "the server stops"},
     {1002, "the server received an invalid message"},
     {1009, "a message was too large"},
@@ -26,6 +26,7 @@ constexpr std::array<std::pair<std::uint16_t, const char*>, 10> kCloseReasons{{
     {4008, "this client is too slow"},
     {4009, "this client sends too much"},
     {4010, "another connection has resumed this participant"},
+    {4012, "this node of the cluster may not serve the session now"},
 }};
 
 std::string describe_close(std::uint16_t code, const std::string& reason) {
@@ -85,6 +86,7 @@ void Exchange::connected(Time now) {
   request("server.info", {}, [this](const Json& result) {
     ServerInfo::Result info;
     read_json(result, info);
+    if (info.nodes) nodes_ = *info.nodes;
     const bool needs_token = info.access == ServerInfo::Result::Access::token;
     std::vector<std::string> tokens;
     if (needs_token && !resume_.empty()) tokens.push_back(resume_);
@@ -106,12 +108,19 @@ void Exchange::enter_with(const std::vector<std::string>& tokens, bool needs_tok
 }
 
 void Exchange::rejoin() {
+  if (moved_join_) {
+    Call call = *std::exchange(moved_join_, std::nullopt);
+    become_open();
+    if (const auto refused = calls_.add(call, CallList::Origin::client)) call.settle(*refused);
+    return;
+  }
   if (!session_) return become_open();
   Json params = join_params_;
   params["session"] = *session_;
   params["resume"] = resume_;
   start_call("session.join", params, [this](const Outcome<Json>& outcome) {
     if (outcome) return finish_rejoin(outcome.value());
+    if (outcome.error().kind() == "moved") return redirect(outcome.error().data().value("url", ""));
     if (!has_session_ended_ || outcome.error().kind() != "no_such_session") {
       return fail(outcome.error());
     }
@@ -171,6 +180,25 @@ void Exchange::fail(const CallError& error) {
   }
 }
 
+void Exchange::redirect(const std::string& url) {
+  constexpr int kMaxAtOnce = 4;  // the nodes may not agree about the owner for some time
+  if (!options_.reconnects) return close("the session is at " + url);
+  next_url_ = url;
+  lost(0, "the session has moved", now_);
+  if (!url.empty()) next_url_ = url;
+  if (++redirects_ <= kMaxAtOnce) retry_time_ = now_;
+}
+
+bool Exchange::follow(const Call& call, const CallError& error) {
+  if (call.method != "session.join" || error.kind() != "moved" || !options_.reconnects ||
+      state_ != ConnectionState::open) {
+    return false;
+  }
+  moved_join_ = call;
+  redirect(error.data().value("url", ""));
+  return true;
+}
+
 void Exchange::lost(std::uint16_t close_code, const std::string& reason, Time now) {
   if (state_ == ConnectionState::waiting || state_ == ConnectionState::closed) return;
   now_ = now;
@@ -181,6 +209,7 @@ void Exchange::lost(std::uint16_t close_code, const std::string& reason, Time no
   auto delay =
       std::min(options_.longest_retry, options_.first_retry * (1 << std::min(attempts_, 20)));
   ++attempts_;
+  if (nodes_.size() > 1) next_url_ = nodes_[next_node_++ % nodes_.size()];
   const double part = std::uniform_real_distribution<double>(0, 0.25)(random_);
   delay += std::chrono::milliseconds(std::llround(part * static_cast<double>(delay.count())));
   retry_time_ = now + delay;
@@ -198,6 +227,10 @@ void Exchange::close(const std::string& reason) {
 }
 
 void Exchange::fail_calls(const std::string& reason) {
+  if (state_ == ConnectionState::closed && moved_join_) {
+    const Call call = *std::exchange(moved_join_, std::nullopt);
+    call.settle(CallError("disconnected", call.method + ": " + reason));
+  }
   for (const Call& call : calls_.close()) {
     call.settle(CallError("disconnected", call.method + ": " + reason));
   }
@@ -263,6 +296,7 @@ void Exchange::receive_reply(const Json& message) {
       outcome = CallError("invalid_reply", call->method + ": " + error.what());
     }
   }
+  if (!outcome && follow(*call, outcome.error())) return;
   call->settle(std::move(outcome));
 }
 
@@ -273,6 +307,7 @@ void Exchange::remember(const Call& call, const Json& result) {
     receiver_.restart();
     session_ = joined.session;
     has_session_ended_ = false;
+    redirects_ = 0;
     resume_ = joined.resume;
     join_params_ = call.params;
     if (!joined.resumed && state_ == ConnectionState::open) subscription_ = {};
@@ -297,6 +332,7 @@ void Exchange::receive_event(const std::string& name, const Json& params) {
   // A server that restarts restores the session, and the client joins it again.
   if (name == "session.closed") has_session_ended_ = true;
   deliver_event(name, params, handlers_.events);
+  if (name == "session.moved" && session_) redirect(params.value("url", ""));
 }
 
 void Exchange::describe(const SessionDescription& description) {

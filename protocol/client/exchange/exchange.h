@@ -29,6 +29,8 @@ class Exchange {
   ConnectionState state() const { return state_; }
   /// Returns the time of the next attempt to connect, in the state `waiting`.
   Time retry_time() const { return retry_time_; }
+  /// Returns the URL of the next attempt to connect. "": the URL of the application.
+  const std::string& next_url() const { return next_url_; }
   /// Returns the time of the next check(), if no message arrives earlier.
   Time next_check() const;
 
@@ -57,6 +59,10 @@ class Exchange {
   void fail(const CallError& error);
 
   void enter_with(const std::vector<std::string>& tokens, bool needs_token);
+  /// Connects to another node of the cluster, at once for the first times.
+  void redirect(const std::string& url);
+  /// Follows a session that a call of the application names. Returns false for other errors.
+  bool follow(const Call& call, const CallError& error);
   void rejoin();
   void finish_rejoin(const Json& result);
   void become_open();
@@ -88,6 +94,11 @@ class Exchange {
   bool was_open_ = false;
   bool has_session_ended_ = false;
   int attempts_ = 0;
+  int redirects_ = 0;               ///< since the last join
+  std::string next_url_;            ///< see next_url()
+  std::vector<std::string> nodes_;  ///< URLs of the cluster's nodes
+  std::size_t next_node_ = 0;
+  std::optional<Call> moved_join_;  ///< session.join of the application, for another node
 
   std::string token_;                   ///< last accepted token
   std::string resume_;                  ///< token of the participant

@@ -6,7 +6,7 @@ import struct
 from collections.abc import AsyncIterator, Callable
 from typing import Any, TypeVar
 
-from vat.exchange import Exchange
+from vat.exchange import MOVES_FOLLOWED, Exchange, VatError
 from vat.frames import Frame
 from vat.session import Session
 from vat.websocket import CLOSE, Address, Closed, Handshake, encode
@@ -29,6 +29,10 @@ class AsyncClient:
         self._ended: BaseException | None = None
 
     async def __aenter__(self) -> "AsyncClient":
+        await self._connect()
+        return self
+
+    async def _connect(self) -> None:
         address = self._address
         tls = (self._tls or ssl.create_default_context()) if address.is_secure else None
         async with asyncio.timeout(self.timeout):
@@ -43,10 +47,12 @@ class AsyncClient:
                 self._writer.close()
                 raise
         self._task = asyncio.create_task(self._read_all())
-        return self
 
     async def __aexit__(self, *_: object) -> None:
         """Closes the connection. Later messages of the server are not read."""
+        await self._disconnect()
+
+    async def _disconnect(self) -> None:
         self._task.cancel()
         await asyncio.wait([self._task])
         self._exchange.output += encode(CLOSE, struct.pack(">H", 1000))
@@ -65,10 +71,20 @@ class AsyncClient:
         return self._exchange.take_reply(identity)
 
     async def join(self, session: str | None = None, **params: Any) -> Session:
-        """Joins a session, by default the first. `params` are those of session.join."""
+        """Joins a session, by default the first, as Client.join()."""
         if session is not None:
             params["session"] = session
-        return Session.joined(self.url, await self.call("session.join", **params))
+        for left in reversed(range(MOVES_FOLLOWED)):
+            try:
+                return Session.joined(self.url, await self.call("session.join", **params))
+            except VatError as error:
+                if left == 0 or not error.moved_to:
+                    raise
+                await self._disconnect()
+                self.url, self._address = error.moved_to, Address.parse(error.moved_to)
+                self._exchange, self._ended = Exchange(), None
+                await self._connect()
+        raise AssertionError("the last attempt returns or raises")
 
     async def notify(self, method: str, **params: Any) -> None:
         """Sends a notification, which has no reply."""

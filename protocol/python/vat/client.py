@@ -6,7 +6,7 @@ import struct
 import time
 from typing import Any
 
-from vat.exchange import Exchange
+from vat.exchange import MOVES_FOLLOWED, Exchange, VatError
 from vat.frames import Frame
 from vat.session import Session
 from vat.websocket import CLOSE, Address, Closed, Handshake, encode
@@ -22,16 +22,20 @@ class Client:
     def __init__(self, url: str = "ws://127.0.0.1:8080/ws", timeout: float = 10,
                  tls: ssl.SSLContext | None = None) -> None:
         """`timeout` [s] is for each reply. `tls` has trusted certificates. None: the system's."""
+        self.timeout = timeout
+        self._tls = tls
+        self._connect(url)
+
+    def _connect(self, url: str) -> None:
         address = Address.parse(url)
         self.url = url
-        self.timeout = timeout
         self._exchange = Exchange()
         self._early = b""  # received with the reply to the handshake
-        self._socket = socket.create_connection((address.host, address.port), timeout)
+        self._socket = socket.create_connection((address.host, address.port), self.timeout)
         self._socket.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         try:
             if address.is_secure:
-                context = tls or ssl.create_default_context()
+                context = self._tls or ssl.create_default_context()
                 self._socket = context.wrap_socket(self._socket, server_hostname=address.host)
             handshake = Handshake(address)
             self._socket.sendall(handshake.request)
@@ -67,10 +71,21 @@ class Client:
         return self._exchange.take_reply(identity)
 
     def join(self, session: str | None = None, **params: Any) -> Session:
-        """Joins a session, by default the first. `params` are those of session.join."""
+        """Joins a session, by default the first. `params` are those of session.join.
+
+        If another node of a cluster has the session, the client connects to that node.
+        """
         if session is not None:
             params["session"] = session
-        return Session.joined(self.url, self.call("session.join", **params))
+        for left in reversed(range(MOVES_FOLLOWED)):
+            try:
+                return Session.joined(self.url, self.call("session.join", **params))
+            except VatError as error:
+                if left == 0 or not error.moved_to:
+                    raise
+                self.close()
+                self._connect(error.moved_to)
+        raise AssertionError("the last attempt returns or raises")
 
     def notify(self, method: str, **params: Any) -> None:
         """Sends a notification, which has no reply."""

@@ -9,6 +9,7 @@ from vat.frames import Frame, FrameDecoder, frame_number
 from vat.websocket import BINARY, PING, PONG, TEXT, Receiver, encode
 
 EVENTS_KEPT = 1000
+MOVES_FOLLOWED = 5  # the nodes of a cluster may disagree about the owner of a session for some time
 Event = tuple[str, dict[str, Any]]
 
 
@@ -20,6 +21,8 @@ class VatError(Exception):
         self.code: int = error["code"]
         self.data: dict[str, Any] = error.get("data", {})  #: with `path` and `hint`
         self.kind: str | None = self.data.get("kind")
+        #: URL of the node with the session; "": the error is another one, or the URL is unknown
+        self.moved_to: str = self.data.get("url", "") if self.kind == "moved" else ""
 
 
 class Exchange:

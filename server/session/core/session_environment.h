@@ -3,6 +3,7 @@
 #include <boost/asio/thread_pool.hpp>
 
 #include "core/support/instruction_set.h"
+#include "core/threads/thread_pool.h"
 #include "protocol/scene/scene_json.h"
 #include "server/access/access.h"
 #include "server/messages/limits.h"
@@ -10,7 +11,6 @@
 #include "server/session/core/session_command.h"
 #include "server/support/clock.h"
 #include "server/support/resource_budget.h"
-#include "core/threads/thread_pool.h"
 
 namespace vat {
 
@@ -18,6 +18,7 @@ class Downloads;
 class MemoryLimit;
 class SavedScenes;
 class SavedStates;
+class SessionReplicas;
 
 /// Resources that all sessions share.
 struct SessionEnvironment {
@@ -39,6 +40,8 @@ struct SessionEnvironment {
   const MemoryLimit* memory = nullptr;  ///< limit for new simulations; null: no limit
   /// Threads that may wait for the disk: reads and writes of saved data. Null: like `states`.
   boost::asio::thread_pool* storage_threads = nullptr;
+  /// Replicas of stored sessions on other machines. Null: the data folder has the only copy.
+  SessionReplicas* replicas = nullptr;
 };
 
 }  // namespace vat

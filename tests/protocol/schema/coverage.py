@@ -11,10 +11,10 @@ from pathlib import Path
 import schemas
 
 LEAST_SCRIPTS = 40
-# Error kinds and events that a client cannot cause, and the end of the server.
+# Error kinds and events that a client cannot cause, the end of the server, and clusters.
 NOT_SHOWN = {
     "internal_error", "storage_failed", "not_recovered", "session.diverged", "session.storage",
-    "server.draining", "server.drain",
+    "server.draining", "server.drain", "moved", "session.moved",
 }
 # Limits that apply before a WebSocket is open or below its messages.
 BELOW_MESSAGES = {"handshake_seconds", "ping_seconds"}

@@ -34,6 +34,7 @@ export function eventInWords(
             text: 'The server cannot store changes of this session, and rejects them.',
           }
         : { level: 'warning', text: 'The server stores changes of this session again.' };
+    case 'session.moved': // the page shows that it connects to the next server
     case 'grab.ended': // the marker disappears with the grab
     case 'session.description': // reported separately
     case 'session.status':

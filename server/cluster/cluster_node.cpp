@@ -1,0 +1,346 @@
+// Life of a node, its lease, and the changes that it starts.
+
+#include "server/cluster/cluster_node.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <boost/asio/post.hpp>
+#include <fstream>
+#include <thread>
+#include <utility>
+
+#include "core/support/check.h"
+#include "server/access/token.h"
+#include "server/support/log.h"
+
+namespace vat {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kTick(100);
+constexpr milliseconds kRefresh(10'000);
+constexpr milliseconds kFresh(1500);  // three renewals
+constexpr milliseconds kAnswering(750);
+constexpr milliseconds kOrphanTurn(1000);
+constexpr milliseconds kFailedPause(5000);
+constexpr milliseconds kClaimTime(20'000);
+constexpr milliseconds kClaimInterval(100);
+constexpr const char* kMarker = "cluster";
+
+double processor_seconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+NatsSettings nats_settings(const ClusterSettings& settings) {
+  return {settings.servers,         "vat " + settings.node, settings.tls_ca,
+          settings.tls_certificate, settings.tls_key,       settings.credentials};
+}
+
+}  // namespace
+
+ClusterNode::ClusterNode(ClusterSettings settings, Storage& storage, Clock& clock, double cores,
+                         const std::string& version)
+    : settings_(std::move(settings)),
+      storage_(storage),
+      clock_(clock),
+      cores_(cores),
+      version_(version),
+      instance_(make_token()),
+      connection_(nats_settings(settings_)),
+      lease_(clock),
+      streams_(connection_),
+      node_bucket_(connection_, "vat-nodes", Lease::kOthersTime),
+      nodes_(clock),
+      locator_(connection_),
+      timer_(clock.make_timer(timer_thread_.get_executor())) {
+  check_data_folder();
+}
+
+ClusterNode::~ClusterNode() {
+  stop();
+}
+
+void ClusterNode::check_data_folder() const {
+  const std::string marker = storage_.folder() + "/" + kMarker;
+  const bool is_marked = std::ifstream(marker).good();
+  if (!is_marked && !storage_.sessions().sessions().empty()) {
+    throw StorageError(StorageError::Kind::failed,
+                       storage_.folder() +
+                           " has the sessions of a server without a cluster; a "
+                           "node needs a data folder of its own");
+  }
+  std::ofstream(marker) << settings_.node << '\n';
+}
+
+std::size_t ClusterNode::start(ClusterHost& host) {
+  host_ = &host;
+  connection_.on_reconnect([this] { needs_refresh_ = true; });
+  claim_name();
+  listen();
+  locator_.watch([this](const LocatedSession&) {
+    boost::asio::post(timer_thread_, [this] {
+      if (!leaving_) tick();
+    });
+  });
+  connection_.flush(milliseconds(5000));
+  for (const Bucket::Entry& entry : node_bucket_.all()) {
+    if (auto node = read_node(entry.value)) nodes_.note(*std::move(node), entry.revision);
+  }
+  locator_.refresh();
+  drop_foreign_sessions();
+  boost::asio::post(timer_thread_, [this] { wait_for_tick(); });
+  return locator_.all().size();
+}
+
+void ClusterNode::claim_name() {
+  const auto end = clock_.now() + kClaimTime;
+  std::uint64_t revision = 0;
+  auto unchanged_since = clock_.now();
+  for (;;) {
+    const auto entry = node_bucket_.get(settings_.node);
+    if (!entry) break;
+    const auto now = clock_.now();
+    if (entry->revision != std::exchange(revision, entry->revision)) unchanged_since = now;
+    if (now - unchanged_since >= Lease::kOthersTime) break;
+    if (now > end) {
+      throw NatsError(NatsError::Kind::refused,
+                      "another running node has the name " + settings_.node);
+    }
+    std::this_thread::sleep_for(kClaimInterval);
+  }
+}
+
+void ClusterNode::drop_foreign_sessions() {
+  for (const StoredSession& stored : storage_.sessions().sessions()) {
+    const auto entry = locator_.find(stored.number);
+    if (!entry || entry->owner != name()) storage_.sessions().close(stored.number);
+  }
+  storage_.remove_closed();
+}
+
+void ClusterNode::listen() {
+  subscriptions_.push_back(node_bucket_.watch([this](const Bucket::Entry& entry) {
+    if (entry.is_removed) return nodes_.forget(entry.key);
+    if (auto node = read_node(entry.value)) nodes_.note(*std::move(node), entry.revision);
+  }));
+  subscriptions_.push_back(
+      connection_.subscribe("vat.node." + name() + ".create", [this](const NatsMessage& request) {
+        post([this, request] {
+          host_->create_for(request.data,
+                            [this, reply_to = request.reply_to](const std::string& answer) {
+                              try {
+                                if (!reply_to.empty()) connection_.publish(reply_to, answer);
+                              } catch (const NatsError& error) {
+                                log_warning("an answer to another node: {}", error.what());
+                              }
+                            });
+        });
+      }));
+}
+
+void ClusterNode::leave() {
+  if (leaving_.exchange(true)) return;
+  subscriptions_.clear();
+  timer_thread_.join();
+}
+
+void ClusterNode::stop() {
+  leave();
+  if (stopped_.exchange(true)) return;
+  lease_.end();
+  {
+    const std::lock_guard lock(mutex_);
+    for (auto& [number, hosted] : hosted_) hosted.stream->end();
+  }
+  threads_.join();
+  try {
+    const auto entry = host_ == nullptr ? std::nullopt : node_bucket_.get(name());
+    if (entry) node_bucket_.remove(entry->key, entry->revision);
+  } catch (const NatsError& error) {
+    log_warning("the node does not leave the cluster's list: {}", error.what());
+  }
+  connection_.close();
+}
+
+NodeInfo ClusterNode::describe() const {
+  return {name(),   instance_,      settings_.public_url,   to_string(best_instruction_set()),
+          version_, cores_ - load_, !draining_ && !leaving_};
+}
+
+void ClusterNode::post(std::function<void()> task) {
+  boost::asio::post(threads_, [this, task = std::move(task)] {
+    if (leaving_) return;
+    try {
+      task();
+    } catch (const std::exception& error) {
+      log_error("cluster: {}", error.what());
+    }
+  });
+}
+
+void ClusterNode::wait_for_tick() {
+  if (leaving_) return;
+  tick();
+  timer_->start(clock_.now() + kTick, [this] { wait_for_tick(); });
+}
+
+void ClusterNode::tick() {
+  const auto now = clock_.now();
+  if (now - last_renewal_ >= Lease::kRenewal) renew(now);
+  if (needs_refresh_.exchange(false) || now - last_refresh_ >= kRefresh) {
+    last_refresh_ = now;
+    post([this] { refresh(); });
+  }
+  if (lease_.is_valid()) {
+    for (const LocatedSession& entry : locator_.all()) look_at(entry);
+  }
+  host_->cluster_changed();
+}
+
+void ClusterNode::refresh() {
+  try {
+    locator_.refresh();
+  } catch (const NatsError&) {
+    needs_refresh_ = true;
+  }
+}
+
+void ClusterNode::measure_load(Time now) {
+  const double seconds = processor_seconds();
+  const double time = std::chrono::duration<double>(now - measured_at_).count();
+  if (measured_at_ != Time() && time > 0) {
+    load_ = load_ + ((seconds - measured_seconds_) / time - load_) / 4;
+  }
+  measured_at_ = now;
+  measured_seconds_ = seconds;
+}
+
+void ClusterNode::renew(Time now) {
+  last_renewal_ = now;
+  measure_load(now);
+  node_bucket_.renew(name(), write_node(describe()), [this, now](const Stream::Appended& result) {
+    if (std::holds_alternative<NatsError>(result) || lease_.confirm(now)) return;
+    if (!checking_.exchange(true)) post([this, now] { check_sessions(now); });
+  });
+}
+
+void ClusterNode::look_at(const LocatedSession& entry) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (reserved_.contains(entry.number)) return;
+  }
+  if (const auto hosted = find_hosted(entry.number)) {
+    if (entry.owner != name() || entry.epoch > hosted->entry.epoch) {
+      post([this, number = entry.number] { lose(number); });
+    }
+    return;
+  }
+  if (!is_wanted(entry)) return;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!reserved_.insert(entry.number).second) return;
+  }
+  post([this, number = entry.number] { take(number); });
+}
+
+bool ClusterNode::is_wanted(const LocatedSession& entry) {
+  const auto now = clock_.now();
+  const bool has_owner = !entry.owner.empty();
+  const std::lock_guard lock(mutex_);
+  const auto failed = failed_.find(entry.number);
+  if (failed != failed_.end() && now - failed->second < kFailedPause) return false;
+  if (entry.owner == name()) return true;
+  if (draining_) return false;
+  if (!has_owner && entry.successor == name()) return true;
+  // After an outage, the other nodes first get the time to renew their leases.
+  const bool may_judge = now - lease_.held_since() >= Lease::kOthersTime;
+  const bool is_orphan = has_owner
+                             ? may_judge && nodes_.silence_of(entry.owner) >= Lease::kOthersTime
+                             : !nodes_.is_seen_within(entry.successor, kFresh);
+  if (!is_orphan) {
+    orphans_.erase(entry.number);
+    return false;
+  }
+  const auto since = orphans_.emplace(entry.number, now).first->second;
+  return is_my_turn(entry, now - since);
+}
+
+bool ClusterNode::is_my_turn(const LocatedSession& entry, SteadyClock::duration orphaned) const {
+  const Result<InstructionSet> needed = parse_instruction_set(entry.instruction_set);
+  if (!needed || !check_available(needed.value())) return false;
+  std::vector<std::string> names;
+  for (const NodeInfo& node : nodes_.seen_within(kFresh)) {
+    const Result<InstructionSet> has = parse_instruction_set(node.instruction_set);
+    if (node.accepts && has && has.value() >= needed.value()) names.push_back(node.name);
+  }
+  names = rank_nodes(entry.number, std::move(names));
+  const auto mine = std::ranges::find(names, name());
+  if (mine == names.end()) return false;
+  return orphaned >= (mine - names.begin()) * kOrphanTurn;
+}
+
+std::shared_ptr<SessionReplica> ClusterNode::replica_of(std::uint64_t session) {
+  const auto hosted = find_hosted(session);
+  if (hosted) return hosted->stream;
+  // The session was lost during its recovery. Its end follows.
+  SessionStream::Place place;
+  place.session = session;
+  const auto stream = make_stream(std::move(place));
+  stream->end();
+  return stream;
+}
+
+std::optional<ClusterNode::Hosted> ClusterNode::find_hosted(std::uint64_t session) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = hosted_.find(session);
+  if (found == hosted_.end()) return {};
+  return found->second;
+}
+
+InstructionSet ClusterNode::common_instructions(InstructionSet greatest) const {
+  for (const NodeInfo& node : nodes_.seen_within(Lease::kOthersTime)) {
+    const Result<InstructionSet> has = parse_instruction_set(node.instruction_set);
+    if (has) greatest = std::min(greatest, has.value());
+  }
+  return greatest;
+}
+
+std::optional<std::string> ClusterNode::url_of(const LocatedSession& session) const {
+  // The request waits if the owner may have failed, and is answered after its next renewal.
+  if (session.owner.empty() || !nodes_.is_seen_within(session.owner, kAnswering)) return {};
+  const auto node = nodes_.find(session.owner);
+  if (!node) return {};
+  return node->url;
+}
+
+std::vector<std::string> ClusterNode::urls() const {
+  std::vector<std::string> urls;
+  for (const NodeInfo& node : nodes_.seen_within(Lease::kOthersTime)) urls.push_back(node.url);
+  return urls;
+}
+
+std::string ClusterNode::best_node() const {
+  constexpr double kLeastGain = 0.5;  // cores; a session of this node needs no redirection
+  std::string best = name();
+  double room = cores_ - load_ + kLeastGain;
+  for (const NodeInfo& node : nodes_.seen_within(kFresh)) {
+    if (!node.accepts || node.room <= room) continue;
+    best = node.name;
+    room = node.room;
+  }
+  return best;
+}
+
+std::string ClusterNode::create_at(const std::string& node, const std::string& request) {
+  constexpr milliseconds kTime(20'000);  // a large scene
+  return connection_.request("vat.node." + node + ".create", request, kTime).data;
+}
+
+}  // namespace vat

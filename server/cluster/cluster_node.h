@@ -1,0 +1,163 @@
+#pragma once
+
+#include <atomic>
+#include <boost/asio/thread_pool.hpp>
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/support/instruction_set.h"
+#include "server/clients/send_gate.h"
+#include "server/cluster/cluster_host.h"
+#include "server/cluster/cluster_settings.h"
+#include "server/cluster/cluster_streams.h"
+#include "server/cluster/lease.h"
+#include "server/cluster/node_table.h"
+#include "server/cluster/session_locator.h"
+#include "server/cluster/session_reader.h"
+#include "server/cluster/session_stream.h"
+#include "server/history/session_replica.h"
+
+namespace vat {
+
+/// This server as a node of a cluster: its lease, its entry in the list of nodes, and the sessions
+/// that it owns, takes and hands over. See server/CLUSTER.md. Thread-safe.
+class ClusterNode final : public SessionReplicas, public SendGate {
+ public:
+  /// Connects to NATS. Throws NatsError if it cannot be reached, and StorageError if the data
+  /// folder has the sessions of a server without a cluster. `storage` and `clock` must outlive the
+  /// node. `cores` is the number of cores for sessions.
+  ClusterNode(ClusterSettings settings, Storage& storage, Clock& clock, double cores,
+              const std::string& version);
+  ~ClusterNode() override;
+
+  /// Enters the cluster, and takes the sessions that the node owned before. Returns the number of
+  /// the cluster's sessions. Waits until an earlier process with the node's name has no lease.
+  /// Throws NatsError. `host` must outlive the call of stop().
+  std::size_t start(ClusterHost& host);
+  /// Takes no further sessions, and ends the renewals of the lease. Sessions can still be stored.
+  void leave();
+  /// As leave(), and ends the connection. The node calls no function of the host afterwards.
+  void stop();
+
+  bool is_open() const override { return lease_.is_valid(); }
+  std::shared_ptr<SessionReplica> replica_of(std::uint64_t session) override;
+
+  const std::string& name() const { return settings_.node; }
+  /// Returns the instruction set that all present nodes have, at most `greatest`.
+  InstructionSet common_instructions(InstructionSet greatest) const;
+  /// Adds a new session with its first log entry, owned by this node. Returns its number. Waits.
+  /// Throws NatsError; its kind is `conflict` if the name is in use.
+  std::uint64_t add_session(const std::string& name, const std::string& instruction_set,
+                            const std::string& settings, const LogEntry& first);
+  /// Removes a session of this node from the cluster, and then calls `done`.
+  void remove_session(std::uint64_t session,
+                      std::function<void(std::optional<StorageError::Kind>)> done);
+
+  /// Returns the sessions of the cluster.
+  std::vector<LocatedSession> sessions() const { return locator_.all(); }
+  std::optional<LocatedSession> find(std::uint64_t session) const { return locator_.find(session); }
+  /// Returns the URL of the session's owner, or nothing if it is unknown or silent.
+  std::optional<std::string> url_of(const LocatedSession& session) const;
+  /// Returns the URLs of the present nodes.
+  std::vector<std::string> urls() const;
+  /// Returns the name of the node that should run a new session.
+  std::string best_node() const;
+  /// Asks another node to create a session. Waits. Returns its answer. Throws NatsError.
+  std::string create_at(const std::string& node, const std::string& request);
+
+  /// Hands a session over to another node, and then calls `done` with the URL of that node.
+  /// Returns false if the node does not own the session, or the other node is not present.
+  bool move(std::uint64_t session, const std::string& node,
+            std::function<void(const std::string& url)> done);
+  /// Hands all sessions over to other nodes. Returns after `time`, or when all are stored.
+  void drain(std::chrono::milliseconds time);
+
+ private:
+  struct Hosted {
+    std::shared_ptr<SessionStream> stream;
+    LocatedSession entry;
+  };
+  using Time = SteadyClock::time_point;
+
+  void check_data_folder() const;
+  void claim_name();
+  void drop_foreign_sessions();
+  NodeInfo describe() const;
+  void listen();
+
+  // On the timer's thread.
+  void wait_for_tick();
+  void tick();
+  void renew(Time now);
+  void look_at(const LocatedSession& entry);
+  bool is_wanted(const LocatedSession& entry);
+  bool is_my_turn(const LocatedSession& entry, SteadyClock::duration orphaned) const;
+
+  // On the threads that may wait.
+  void refresh();
+  void check_sessions(Time sent);
+  void take(std::uint64_t session);
+  bool is_silent(const std::string& node);
+  void lose(std::uint64_t session);
+  /// Returns false if the session is not hosted.
+  bool forget(std::uint64_t session);
+  void release(std::uint64_t session, const std::string& successor,
+               const std::function<void(const std::string&)>& done);
+  /// Changes the entry of a hosted session. Throws NatsError if the session is lost.
+  LocatedSession update(std::uint64_t session,
+                        const std::function<LocatedSession(const LocatedSession&)>& change);
+
+  std::shared_ptr<SessionStream> make_stream(SessionStream::Place place);
+  /// Prevents that the node takes or loses the session, or permits it again.
+  void reserve(std::uint64_t session, bool is_reserved);
+  std::optional<Hosted> find_hosted(std::uint64_t session) const;
+  void post(std::function<void()> task);
+  void measure_load(Time now);
+
+  const ClusterSettings settings_;
+  Storage& storage_;
+  Clock& clock_;
+  const double cores_;
+  const std::string version_;
+  const std::string instance_;
+  boost::asio::thread_pool timer_thread_{1};
+  boost::asio::thread_pool threads_{4};  // for work that waits
+  NatsConnection connection_;
+  Lease lease_;
+  ClusterStreams streams_;
+  Bucket node_bucket_;
+  NodeTable nodes_;
+  SessionLocator locator_;
+  ClusterHost* host_ = nullptr;
+  std::atomic<bool> leaving_ = false;
+  std::atomic<bool> stopped_ = false;
+  std::atomic<bool> draining_ = false;
+  std::atomic<bool> checking_ = false;
+  std::atomic<bool> needs_refresh_ = false;
+  std::atomic<double> load_ = 0;  // used cores
+
+  mutable std::mutex mutex_;  // guards the members below
+  std::map<std::uint64_t, Hosted> hosted_;
+  std::set<std::uint64_t> reserved_;      // sessions that are being created, taken or moved
+  std::map<std::uint64_t, Time> failed_;  // times at which a take-over failed
+  std::map<std::uint64_t, Time> orphans_;
+
+  // Used by the timer's thread only.
+  Time last_renewal_{};
+  Time last_refresh_{};
+  Time measured_at_{};
+  double measured_seconds_ = 0;
+
+  const std::unique_ptr<Timer> timer_;
+  std::vector<std::unique_ptr<NatsConnection::Subscription>> subscriptions_;
+};
+
+}  // namespace vat

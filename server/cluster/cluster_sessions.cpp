@@ -1,0 +1,274 @@
+// Sessions of a node: new, taken, lost and moved ones.
+
+#include <algorithm>
+#include <boost/asio/post.hpp>
+#include <condition_variable>
+#include <utility>
+
+#include "core/support/check.h"
+#include "server/cluster/cluster_node.h"
+#include "server/support/log.h"
+
+namespace vat {
+namespace {
+
+constexpr int kUpdateAttempts = 10;
+
+std::string id_of_session(std::uint64_t session) {
+  return "s" + std::to_string(session);
+}
+
+}  // namespace
+
+std::shared_ptr<SessionStream> ClusterNode::make_stream(SessionStream::Place place) {
+  const std::uint64_t number = place.session;
+  return std::make_shared<SessionStream>(
+      streams_, lease_, clock_, threads_.get_executor(), std::move(place),
+      [this, number] { post([this, number] { lose(number); }); },
+      [this, number](const std::string& name) {
+        update(number, [&](const LocatedSession& entry) { return locator_.rename(entry, name); });
+      });
+}
+
+std::uint64_t ClusterNode::add_session(const std::string& name, const std::string& instruction_set,
+                                       const std::string& settings, const LogEntry& first) {
+  LocatedSession entry;
+  entry.number = locator_.next_number();
+  entry.name = name;
+  entry.owner = settings_.node;
+  entry.instruction_set = instruction_set;
+  entry.created = clock_.wall_time();
+  SessionStream::Place place;
+  place.session = entry.number;
+  place.epoch = 1;
+  place.last_entry = first.sequence;
+  place.name = name;
+  place.settings = settings;
+  reserve(entry.number, true);
+  try {
+    entry = locator_.create(entry);
+    place.last_message = streams_.logs.append(
+        log_subject(entry.number),
+        write_records({EntriesRecord{{first}}, SettingsRecord{name, settings}}), 0,
+        {{kEpochHeader, "1"}, {kWriteHeader, "1.0"}});
+  } catch (const NatsError&) {
+    if (entry.revision > 0) locator_.remove(entry);
+    reserve(entry.number, false);
+    throw;
+  }
+  const std::lock_guard lock(mutex_);
+  hosted_[entry.number] = {make_stream(std::move(place)), entry};
+  reserved_.erase(entry.number);
+  return entry.number;
+}
+
+void ClusterNode::remove_session(std::uint64_t session,
+                                 std::function<void(std::optional<StorageError::Kind>)> done) {
+  boost::asio::post(threads_, [this, session, done = std::move(done)] {
+    try {
+      update(session, [this](const LocatedSession& entry) {
+        locator_.remove(entry);
+        return entry;
+      });
+      forget(session);
+      remove_messages(streams_, session);
+    } catch (const NatsError& error) {
+      log_warning("session {} is not removed: {}", id_of_session(session), error.what());
+      if (find_hosted(session)) return done(StorageError::Kind::unreachable);
+    }
+    done({});
+  });
+}
+
+bool ClusterNode::forget(std::uint64_t session) {
+  std::shared_ptr<SessionStream> stream;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = hosted_.extract(session);
+    if (!found) return false;
+    stream = found.mapped().stream;
+  }
+  stream->end();
+  return true;
+}
+
+LocatedSession ClusterNode::update(
+    std::uint64_t session, const std::function<LocatedSession(const LocatedSession&)>& change) {
+  for (int attempt = 1;; ++attempt) {
+    const auto hosted = find_hosted(session);
+    if (!hosted) throw NatsError(NatsError::Kind::conflict, "the session has moved");
+    try {
+      const LocatedSession changed = change(hosted->entry);
+      const std::lock_guard lock(mutex_);
+      const auto found = hosted_.find(session);
+      if (found != hosted_.end()) found->second.entry = changed;
+      return changed;
+    } catch (const NatsError& error) {
+      if (error.kind() != NatsError::Kind::conflict || attempt == kUpdateAttempts) throw;
+    }
+    const auto current = locator_.read(session);
+    if (!current || current->owner != name() || current->epoch != hosted->entry.epoch) {
+      throw NatsError(NatsError::Kind::conflict, "the session has another owner");
+    }
+    if (current->revision == hosted->entry.revision) {
+      throw NatsError(NatsError::Kind::conflict, "the name is in use");
+    }
+    const std::lock_guard lock(mutex_);
+    const auto found = hosted_.find(session);
+    if (found != hosted_.end()) found->second.entry = *current;
+  }
+}
+
+void ClusterNode::check_sessions(Time sent) {
+  std::vector<std::uint64_t> numbers;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [number, hosted] : hosted_) numbers.push_back(number);
+  }
+  for (const std::uint64_t number : numbers) {
+    try {
+      update(number, [this](const LocatedSession& entry) { return locator_.renew(entry); });
+    } catch (const NatsError& error) {
+      if (error.kind() != NatsError::Kind::conflict) {
+        checking_ = false;  // the next renewal tries again
+        return;
+      }
+      lose(number);
+    }
+  }
+  checking_ = false;
+  if (lease_.reopen(sent)) log_info("the node {} may serve its sessions", name());
+}
+
+bool ClusterNode::is_silent(const std::string& node) {
+  const auto entry = node_bucket_.get(node);
+  const auto known = nodes_.revision_of(node);
+  if (!entry || entry->revision == known) return true;
+  if (auto info = read_node(entry->value)) nodes_.note(*std::move(info), entry->revision);
+  return false;
+}
+
+void ClusterNode::take(std::uint64_t session) {
+  const auto unreserve = [&](bool has_failed) {
+    const std::lock_guard lock(mutex_);
+    reserved_.erase(session);
+    orphans_.erase(session);
+    if (has_failed) failed_[session] = clock_.now();
+  };
+  try {
+    const auto before = locator_.read(session);
+    const bool is_other = before && !before->owner.empty() && before->owner != name();
+    if (!before || (is_other && !is_silent(before->owner))) return unreserve(false);
+    const LocatedSession entry = locator_.take(*before, name());
+    const SessionImage image = take_image(streams_, entry);
+    store_image(storage_, image);
+    SessionStream::Place place;
+    place.session = session;
+    place.epoch = entry.epoch;
+    place.last_message = image.last_message;
+    place.last_entry = image.entries.empty() ? 0 : image.entries.back().sequence;
+    if (image.state) place.last_entry = std::max(place.last_entry, image.state->sequence);
+    place.name = image.stored.name;
+    place.settings = image.stored.settings;
+    place.manifest = image.manifest;
+    place.manifest_message = image.manifest_message;
+    {
+      const std::lock_guard lock(mutex_);
+      hosted_[session] = {make_stream(std::move(place)), entry};
+    }
+    log_info("session {} is taken from {}, epoch {}", id_of_session(session),
+             before->owner.empty() ? "its previous node" : before->owner, entry.epoch);
+    host_->start_taken(image.stored);
+    unreserve(false);
+  } catch (const NatsError& error) {
+    log_warning("session {} is not taken: {}", id_of_session(session), error.what());
+    unreserve(false);
+  } catch (const std::exception& error) {
+    log_error("session {} cannot be taken: {}", id_of_session(session), error.what());
+    unreserve(true);
+  }
+}
+
+void ClusterNode::lose(std::uint64_t session) {
+  if (!forget(session)) return;
+  const auto entry = locator_.find(session);
+  log_warning("session {} has another owner{}", id_of_session(session),
+              entry ? ": " + entry->owner : "");
+  host_->end_lost(session, entry ? url_of(*entry).value_or("") : "");
+}
+
+void ClusterNode::reserve(std::uint64_t session, bool is_reserved) {
+  const std::lock_guard lock(mutex_);
+  if (is_reserved) {
+    reserved_.insert(session);
+  } else {
+    reserved_.erase(session);
+  }
+}
+
+bool ClusterNode::move(std::uint64_t session, const std::string& node,
+                       std::function<void(const std::string& url)> done) {
+  if (!find_hosted(session) || node == name()) return false;
+  if (!nodes_.is_seen_within(node, Lease::kHolderTime)) return false;
+  reserve(session, true);
+  const bool has_begun =
+      host_->stop_for_move(session, [this, session, node, done = std::move(done)] {
+        post([this, session, node, done] { release(session, node, done); });
+      });
+  if (!has_begun) reserve(session, false);
+  return has_begun;
+}
+
+void ClusterNode::release(std::uint64_t session, const std::string& successor,
+                          const std::function<void(const std::string&)>& done) {
+  try {
+    update(session,
+           [&](const LocatedSession& entry) { return locator_.release(entry, successor); });
+  } catch (const NatsError& error) {
+    log_warning("session {} is not released: {}", id_of_session(session), error.what());
+  }
+  forget(session);
+  reserve(session, false);
+  const auto node = nodes_.find(successor);
+  log_info("session {} is handed over to {}", id_of_session(session), successor);
+  const std::string url = node ? node->url : std::string();
+  host_->end_lost(session, url);
+  done(url);
+}
+
+void ClusterNode::drain(std::chrono::milliseconds time) {
+  draining_ = true;
+  struct Left {
+    std::mutex mutex;
+    std::condition_variable changed;
+    std::size_t count = 0;
+  };
+  const auto left = std::make_shared<Left>();
+  std::vector<std::uint64_t> numbers;
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [number, hosted] : hosted_) numbers.push_back(number);
+  }
+  for (const std::uint64_t number : numbers) {
+    std::vector<std::string> names;
+    for (const NodeInfo& node : nodes_.seen_within(Lease::kHolderTime)) {
+      if (node.accepts && node.name != name()) names.push_back(node.name);
+    }
+    names = rank_nodes(number, std::move(names));
+    if (names.empty()) continue;
+    {
+      const std::lock_guard lock(left->mutex);
+      ++left->count;
+    }
+    const auto end = [left] {
+      const std::lock_guard lock(left->mutex);
+      --left->count;
+      left->changed.notify_all();
+    };
+    if (!move(number, names.front(), [end](const std::string&) { end(); })) end();
+  }
+  std::unique_lock lock(left->mutex);
+  left->changed.wait_for(lock, time, [&] { return left->count == 0; });
+}
+
+}  // namespace vat

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace vat {
+
+/// Settings of a server that is a node of a cluster.
+struct ClusterSettings {
+  std::vector<std::string> servers;  ///< URLs of the NATS servers; empty: no cluster
+  std::string node;                  ///< name of the node, unique in the cluster
+  std::string public_url;            ///< URL at which clients reach the node
+  std::string tls_ca;                ///< see NatsSettings
+  std::string tls_certificate;
+  std::string tls_key;
+  std::string credentials;
+
+  bool is_used() const { return !servers.empty(); }
+};
+
+}  // namespace vat

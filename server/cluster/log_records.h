@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "server/storage/checkpoint_store.h"
+#include "server/storage/session_store.h"
+
+/// Content of the messages in the log of a session. A message has one or more records, and is
+/// stored as a whole or not at all.
+namespace vat {
+
+/// Log entries that follow the previous ones.
+struct EntriesRecord {
+  std::vector<LogEntry> entries;
+};
+/// The entry had no effect.
+struct RefusedRecord {
+  std::uint64_t sequence = 0;
+};
+/// A recovery must repeat at least the ticks up to this position.
+struct ReachedRecord {
+  std::uint64_t position = 0;
+};
+struct SettingsRecord {
+  std::string name;
+  std::string settings;
+};
+/// Another node became the owner. The previous owner can append nothing after this record.
+struct OwnerRecord {
+  std::string node;
+  std::uint64_t epoch = 0;
+};
+using LogRecord = std::variant<EntriesRecord, RefusedRecord, ReachedRecord, SettingsRecord,
+                               OwnerRecord, SessionProgress>;
+
+/// Return the bytes of a message, compressed if they are many, and its content. read_records()
+/// throws StorageError (kind `corrupt`) if the message is invalid.
+std::string write_records(const std::vector<LogRecord>& records);
+std::vector<LogRecord> read_records(const std::string& bytes);
+
+/// A checkpoint with all that a recovery needs beside the later log.
+struct PackedState {
+  Checkpoint state;  ///< with the compressed state
+  LogEntry loaded;   ///< entry that loaded the scene
+  std::string name;
+  std::string settings;
+  std::uint64_t covered = 0;  ///< number of the last log message before later entries
+};
+/// Return the bytes of the state, and the state. unpack_state() throws StorageError (kind
+/// `corrupt`).
+std::string pack_state(const PackedState& state);
+PackedState unpack_state(const std::string& bytes);
+
+/// Location of a state in the stream of states.
+struct StateManifest {
+  std::uint64_t epoch = 0;
+  std::vector<std::uint64_t> chunks;    ///< message numbers; empty: no state is stored
+  std::uint64_t covered = 0;            ///< see PackedState
+  std::vector<std::uint64_t> previous;  ///< chunks of the state before
+  std::uint64_t previous_covered = 0;
+};
+std::string write_manifest(const StateManifest& manifest);
+StateManifest read_manifest(const std::string& bytes);
+
+}  // namespace vat

@@ -1,0 +1,93 @@
+#include "server/cluster/node_table.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "protocol/json/json_reader.h"
+
+namespace vat {
+namespace {
+
+std::uint64_t hash_of_node(std::uint64_t session, const std::string& name) {
+  std::uint64_t hash = 0xcbf29ce484222325;  // FNV-1a
+  const auto add = [&hash](std::uint64_t byte) { hash = (hash ^ byte) * 0x100000001b3; };
+  for (int shift = 0; shift < 64; shift += 8) add(session >> shift & 0xff);
+  for (const char c : name) add(static_cast<unsigned char>(c));
+  hash ^= hash >> 33;  // FNV-1a alone mixes the last bytes too little
+  hash *= 0xff51afd7ed558ccd;
+  return hash ^ hash >> 33;
+}
+
+}  // namespace
+
+std::string write_node(const NodeInfo& node) {
+  return Json{{"node", node.name},       {"instance", node.instance},
+              {"url", node.url},         {"instruction_set", node.instruction_set},
+              {"version", node.version}, {"room", node.room},
+              {"accepts", node.accepts}}
+      .dump();
+}
+
+std::optional<NodeInfo> read_node(const std::string& text) {
+  const Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object()) return {};
+  try {
+    return NodeInfo{
+        json.at("node"),    json.at("instance"), json.at("url"),    json.at("instruction_set"),
+        json.at("version"), json.at("room"),     json.at("accepts")};
+  } catch (const Json::exception&) {
+    return {};
+  }
+}
+
+void NodeTable::note(NodeInfo node, std::uint64_t revision) {
+  const std::lock_guard lock(mutex_);
+  std::string name = node.name;
+  nodes_[std::move(name)] = {std::move(node), clock_.now(), revision};
+}
+
+std::uint64_t NodeTable::revision_of(const std::string& name) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = nodes_.find(name);
+  return found == nodes_.end() ? 0 : found->second.revision;
+}
+
+void NodeTable::forget(const std::string& name) {
+  const std::lock_guard lock(mutex_);
+  nodes_.erase(name);
+}
+
+std::optional<NodeInfo> NodeTable::find(const std::string& name) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = nodes_.find(name);
+  if (found == nodes_.end()) return {};
+  return found->second.node;
+}
+
+std::vector<NodeInfo> NodeTable::seen_within(SteadyClock::duration time) const {
+  const std::lock_guard lock(mutex_);
+  std::vector<NodeInfo> nodes;
+  for (const auto& [name, seen] : nodes_) {
+    if (clock_.now() - seen.time < time) nodes.push_back(seen.node);
+  }
+  return nodes;
+}
+
+bool NodeTable::is_seen_within(const std::string& name, SteadyClock::duration time) const {
+  return silence_of(name) < time && find(name).has_value();
+}
+
+SteadyClock::duration NodeTable::silence_of(const std::string& name) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = nodes_.find(name);
+  return clock_.now() - (found == nodes_.end() ? begin_ : found->second.time);
+}
+
+std::vector<std::string> rank_nodes(std::uint64_t session, std::vector<std::string> names) {
+  std::ranges::sort(names, [session](const std::string& a, const std::string& b) {
+    return std::pair(hash_of_node(session, a), a) > std::pair(hash_of_node(session, b), b);
+  });
+  return names;
+}
+
+}  // namespace vat

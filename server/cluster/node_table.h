@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/support/clock.h"
+
+namespace vat {
+
+/// Node of a cluster, as the node describes itself with each renewal.
+struct NodeInfo {
+  std::string name;
+  std::string instance;         ///< differs after each start
+  std::string url;              ///< URL at which clients reach the node
+  std::string instruction_set;  ///< best instruction set of the machine
+  std::string version;
+  double room = 0;      ///< unused processor cores
+  bool accepts = true;  ///< false: the node takes no further sessions
+};
+
+std::string write_node(const NodeInfo& node);
+/// Returns nothing if the text is invalid.
+std::optional<NodeInfo> read_node(const std::string& text);
+
+/// Nodes of a cluster, with the times at which this process received their renewals. Thread-safe.
+class NodeTable {
+ public:
+  explicit NodeTable(const Clock& clock) : clock_(clock), begin_(clock.now()) {}
+
+  /// Notes a renewal with this revision of the node's entry.
+  void note(NodeInfo node, std::uint64_t revision);
+  /// Forgets a node that has left.
+  void forget(const std::string& name);
+  std::optional<NodeInfo> find(const std::string& name) const;
+  /// Returns the nodes with a renewal within the last `time`.
+  std::vector<NodeInfo> seen_within(SteadyClock::duration time) const;
+  bool is_seen_within(const std::string& name, SteadyClock::duration time) const;
+  /// Returns the revision of the node's last known renewal; 0: none.
+  std::uint64_t revision_of(const std::string& name) const;
+  /// Returns how long no renewal of the node has arrived, at most since the start of this process.
+  SteadyClock::duration silence_of(const std::string& name) const;
+
+ private:
+  struct Seen {
+    NodeInfo node;
+    SteadyClock::time_point time;
+    std::uint64_t revision = 0;
+  };
+  const Clock& clock_;
+  const SteadyClock::time_point begin_;
+  mutable std::mutex mutex_;
+  std::map<std::string, Seen> nodes_;
+};
+
+/// Returns the names in the order in which the nodes should take a session (rendezvous hashing):
+/// the order differs from session to session, and the end of a node does not change the order of
+/// the others.
+std::vector<std::string> rank_nodes(std::uint64_t session, std::vector<std::string> names);
+
+}  // namespace vat

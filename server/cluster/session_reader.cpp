@@ -1,0 +1,150 @@
+#include "server/cluster/session_reader.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "server/storage/sqlite/compression.h"
+#include "server/support/log.h"
+
+namespace vat {
+namespace {
+
+constexpr int kFenceAttempts = 100;  // while the previous owner still appends
+
+NatsConnection::Headers headers_of(const LocatedSession& session) {
+  return {{kEpochHeader, std::to_string(session.epoch)},
+          {kWriteHeader, std::to_string(session.epoch) + ".0"}};
+}
+
+/// Appends a record after which the previous owner can append nothing.
+std::uint64_t end_previous_owner(ClusterStreams& streams, const LocatedSession& session) {
+  const std::string subject = log_subject(session.number);
+  const std::string record = write_records({OwnerRecord{session.owner, session.epoch}});
+  for (int attempt = 1;; ++attempt) {
+    const auto last = streams.logs.last(subject);
+    if (!last) {
+      throw StorageError(StorageError::Kind::corrupt,
+                         "session s" + std::to_string(session.number) + " has no log");
+    }
+    try {
+      return streams.logs.append(subject, record, last->sequence, headers_of(session));
+    } catch (const NatsError& error) {
+      if (error.kind() != NatsError::Kind::conflict || attempt == kFenceAttempts) throw;
+    }
+  }
+}
+
+/// Reads the chunks, or returns nothing if one is missing.
+std::optional<PackedState> read_packed(ClusterStreams& streams,
+                                       const std::vector<std::uint64_t>& chunks) {
+  std::string bytes;
+  for (const std::uint64_t chunk : chunks) {
+    const auto message = streams.states.find(chunk);
+    if (!message) return {};
+    bytes += message->data;
+  }
+  if (bytes.empty()) return {};
+  return unpack_state(bytes);
+}
+
+/// Writes the manifest again, so that a manifest of the previous owner is refused, and reads the
+/// newest state.
+std::optional<PackedState> take_state(ClusterStreams& streams, const LocatedSession& session,
+                                      SessionImage& image) {
+  const std::string subject = manifest_subject(session.number);
+  for (int attempt = 1; image.manifest_message == 0; ++attempt) {
+    const auto last = streams.states.last(subject);
+    image.manifest = last ? read_manifest(last->data) : StateManifest();
+    image.manifest.epoch = session.epoch;
+    try {
+      image.manifest_message = streams.states.append(
+          subject, write_manifest(image.manifest), last ? last->sequence : 0, headers_of(session));
+    } catch (const NatsError& error) {
+      if (error.kind() != NatsError::Kind::conflict || attempt == kFenceAttempts) throw;
+    }
+  }
+  if (auto newest = read_packed(streams, image.manifest.chunks)) return newest;
+  if (!image.manifest.chunks.empty()) {
+    log_warning("session s{}: its newest state is incomplete", session.number);
+  }
+  return read_packed(streams, image.manifest.previous);
+}
+
+struct ImageReader {
+  SessionImage& image;
+  const std::uint64_t first;  // sequence of the first entry that is needed
+
+  void operator()(const EntriesRecord& record) {
+    for (const LogEntry& entry : record.entries) {
+      if (entry.sequence < first) continue;
+      image.entries.push_back(entry);
+    }
+  }
+  void operator()(const RefusedRecord& record) {
+    for (LogEntry& entry : image.entries) {
+      if (entry.sequence == record.sequence) entry.refused = true;
+    }
+  }
+  void operator()(const ReachedRecord& record) {
+    image.stored.reached = std::max(image.stored.reached, record.position);
+  }
+  void operator()(const SettingsRecord& record) {
+    image.stored.name = record.name;
+    image.stored.settings = record.settings;
+  }
+  void operator()(const OwnerRecord&) {}
+  void operator()(const SessionProgress& progress) { image.stored.progress = progress; }
+};
+
+}  // namespace
+
+SessionImage take_image(ClusterStreams& streams, const LocatedSession& session) {
+  SessionImage image;
+  image.stored.number = session.number;
+  image.stored.name = session.name;
+  image.stored.instruction_set = session.instruction_set;
+  image.last_message = end_previous_owner(streams, session);
+  auto packed = take_state(streams, session, image);
+  std::uint64_t from = 1;
+  ImageReader reader{image, packed ? packed->state.sequence + 1 : 1};
+  if (packed) {
+    from = packed->covered + 1;
+    image.stored.name = packed->name;
+    image.stored.settings = packed->settings;
+    if (packed->loaded.sequence < reader.first) image.entries.push_back(packed->loaded);
+    image.state = std::move(packed->state);
+  }
+  const std::string subject = log_subject(session.number);
+  while (from <= image.last_message) {
+    const auto message = streams.logs.next(subject, from);
+    if (!message) break;
+    for (const LogRecord& record : read_records(message->data)) std::visit(reader, record);
+    from = message->sequence + 1;
+  }
+  if (from <= image.last_message) {
+    throw StorageError(StorageError::Kind::corrupt,
+                       "session s" + std::to_string(session.number) + ": its log is incomplete");
+  }
+  return image;
+}
+
+void store_image(Storage& storage, const SessionImage& image) {
+  const std::uint64_t number = image.stored.number;
+  storage.flush();
+  storage.checkpoints().remove(number);
+  storage.recent_states().remove(number);
+  storage.sessions().replace(image.stored, image.entries);
+  if (!image.state) return;
+  Checkpoint state = *image.state;
+  state.state = decompress(state.state, kMaxStateBytes);
+  storage.checkpoints().write(state);
+}
+
+void remove_messages(ClusterStreams& streams, std::uint64_t session) {
+  streams.states.purge(chunk_subject(session));
+  streams.states.purge(manifest_subject(session));
+  streams.logs.purge(log_subject(session));
+}
+
+}  // namespace vat

@@ -1,0 +1,209 @@
+// Sessions of a cluster, for a server that is one of its nodes.
+
+#include <boost/asio/post.hpp>
+#include <charconv>
+#include <utility>
+
+#include "core/support/check.h"
+#include "server/directory/session_directory.h"
+#include "server/support/log.h"
+
+namespace vat {
+namespace {
+
+/// Returns the number in the id of a stored session ("s12").
+std::optional<SessionNumber> number_of(const SessionId& id) {
+  SessionNumber number = 0;
+  const char* const end = id.data() + id.size();
+  if (!id.starts_with('s')) return {};
+  const auto [rest, error] = std::from_chars(id.data() + 1, end, number);
+  if (error != std::errc() || rest != end) return {};
+  return number;
+}
+
+std::string write_answer(const RpcResult& result) {
+  if (const auto* error = std::get_if<RpcError>(&result)) {
+    return Json{
+        {"kind", static_cast<int>(error->kind)}, {"message", error->message}, {"data", error->data}}
+        .dump();
+  }
+  return Json{{"result", std::get<Json>(result)}}.dump();
+}
+
+RpcResult read_create_answer(const std::string& text) {
+  const Json answer = Json::parse(text);
+  if (answer.contains("result")) return answer.at("result");
+  const auto kind = answer.at("kind").get<std::size_t>();
+  if (kind >= error_rows().size()) return internal_error();
+  return RpcError{static_cast<ErrorKind>(kind), answer.at("message"), answer.at("data")};
+}
+
+}  // namespace
+
+std::size_t SessionDirectory::recover() {
+  if (resources_.cluster == nullptr) return recoverer_.start();
+  return resources_.cluster->start(*this);
+}
+
+void SessionDirectory::start_taken(const StoredSession& session) {
+  recoverer_.start(session);
+}
+
+void SessionDirectory::tell_moved(SessionNumber number, const std::string& url) {
+  VAT_CHECK(tables_.mutex.is_held());
+  tables_.clients.close_session(
+      number, write_event("session.moved", {{"session", to_id(number)}, {"url", url}}));
+}
+
+void SessionDirectory::end_lost(std::uint64_t session, const std::string& url) {
+  std::vector<AbsentSession::Waiting> waiting;
+  {
+    const std::lock_guard lock(tables_.mutex);
+    if (admission_.stopped()) return;
+    tell_moved(session, url);
+    if (tables_.sessions.running().contains(session)) {
+      tables_.sessions.at(session).close(Session::End::moved, {});
+      tables_.sessions.remove(session);
+    } else if (tables_.sessions.absent().contains(session)) {
+      waiting = std::move(tables_.sessions.absent_at(session).waiting);
+      tables_.sessions.remove_absent(session);
+    }
+    remove_tokens(to_id(session), Session::End::resumable);
+  }
+  for (AbsentSession::Waiting& one : waiting) one.reply.answer(moved_to(to_id(session), url));
+  resources_.storage->journal().post(
+      [&storage = *resources_.storage, session] { storage.sessions().close(session); },
+      [&storage = *resources_.storage](auto) { storage.remove_closed(); });
+  log_info("session {} is on another node: {}", to_id(session), url);
+}
+
+bool SessionDirectory::stop_for_move(std::uint64_t session, std::function<void()> done) {
+  const std::lock_guard lock(tables_.mutex);
+  if (!tables_.sessions.running().contains(session)) return false;
+  tables_.sessions.at(session).hand_over(std::move(done));
+  return true;
+}
+
+void SessionDirectory::create_for(const std::string& request,
+                                  std::function<void(const std::string&)> answer) {
+  boost::asio::post(resources_.creations, [this, request, answer = std::move(answer)] {
+    RpcResult result = internal_error();
+    try {
+      const Json json = Json::parse(request);
+      auto read = read_named_scene(json.at("scene"), static_cast<Level>(json.at("level")),
+                                   resources_.environment);
+      if (auto* error = std::get_if<RpcError>(&read)) {
+        result = std::move(*error);
+      } else {
+        auto created = create(json.at("name"), std::get<Scene>(read), {});
+        if (const auto* id = std::get_if<SessionId>(&created)) return answer_created(*id, answer);
+        result = std::get<RpcError>(std::move(created));
+      }
+    } catch (const std::exception& error) {
+      log_error("a session for another node is not created: {}", error.what());
+    }
+    answer(write_answer(result));
+  });
+}
+
+void SessionDirectory::answer_created(const SessionId& id,
+                                      const std::function<void(const std::string&)>& answer) {
+  const auto time = resources_.settings.access.ticket_time;
+  resources_.tokens.issue({Role::owner, id, true}, 1, time,
+                          [id, answer](const AccessTokens::Issued& issued) {
+                            Json result{{"session", id}, {"tick", 0}};
+                            if (issued.token) result["ticket"] = *issued.token;
+                            answer(write_answer(result));
+                          });
+}
+
+std::optional<RpcResult> SessionDirectory::create_elsewhere(const Json& scene, Level level,
+                                                            const std::string& name) {
+  if (resources_.cluster == nullptr) return {};
+  const std::string node = resources_.cluster->best_node();
+  if (node == resources_.cluster->name()) return {};
+  const Json request{{"name", name}, {"scene", scene}, {"level", static_cast<int>(level)}};
+  try {
+    return read_create_answer(resources_.cluster->create_at(node, request.dump()));
+  } catch (const std::exception& error) {
+    log_warning("the node {} creates no session: {}", node, error.what());
+    return {};
+  }
+}
+
+std::optional<LocatedSession> SessionDirectory::find_elsewhere(
+    const std::optional<SessionId>& id) const {
+  if (resources_.cluster == nullptr) return {};
+  if (id) {
+    const auto number = number_of(*id);
+    return number ? resources_.cluster->find(*number) : std::nullopt;
+  }
+  const std::vector<LocatedSession> all = resources_.cluster->sessions();
+  if (all.empty()) return {};
+  return all.front();
+}
+
+std::optional<RpcError> SessionDirectory::join_elsewhere(PendingReply& reply,
+                                                         const std::optional<SessionId>& id,
+                                                         JoinRequest& request, bool& is_missing) {
+  VAT_CHECK(tables_.mutex.is_held());
+  const auto located = find_elsewhere(id);
+  is_missing = !located;
+  if (!located) return {};
+  const Client* const client = tables_.clients.find(reply);
+  VAT_CHECK(client != nullptr);
+  if (auto error = admission_.refuse_access(*client, located->number)) return error;
+  if (located->owner != resources_.cluster->name()) {
+    if (auto url = resources_.cluster->url_of(*located)) {
+      return moved_to(to_id(located->number), *url);
+    }
+  }
+  waiting_joins_.push_back({to_id(located->number), {std::move(reply), std::move(request)}});
+  return {};
+}
+
+void SessionDirectory::cluster_changed() {
+  std::vector<WaitingJoin> waiting;
+  {
+    const std::lock_guard lock(tables_.mutex);
+    waiting.swap(waiting_joins_);
+  }
+  for (WaitingJoin& one : waiting) {
+    if (auto error = join(one.join.reply, one.id, std::move(one.join.request))) {
+      one.join.reply.answer(*std::move(error));
+    }
+  }
+}
+
+void SessionDirectory::add_elsewhere(const Client& client, std::vector<Listed>& list) const {
+  VAT_CHECK(tables_.mutex.is_held());
+  if (resources_.cluster == nullptr) return;
+  for (const LocatedSession& one : resources_.cluster->sessions()) {
+    const bool is_here = tables_.sessions.running().contains(one.number) ||
+                         tables_.sessions.absent().contains(one.number);
+    if (is_here || admission_.refuse_access(client, one.number)) continue;
+    SessionSummary summary;
+    summary.name = one.name;
+    list.push_back({to_id(one.number), std::move(summary), "elsewhere", false, one.owner});
+  }
+}
+
+std::optional<RpcError> SessionDirectory::move(PendingReply& reply, const SessionId& id,
+                                               const std::string& node) {
+  if (resources_.cluster == nullptr) return not_allowed("the server is no node of a cluster");
+  const auto number = number_of(id);
+  const auto waiting = std::make_shared<PendingReply>(std::move(reply));
+  const auto answer = [waiting, id](const std::string& url) {
+    waiting->answer(Json{{"session", id}, {"url", url}});
+  };
+  if (number && resources_.cluster->move(*number, node, answer)) return {};
+  reply = std::move(*waiting);
+  const auto elsewhere = number ? resources_.cluster->find(*number) : std::nullopt;
+  if (!elsewhere) return no_such_session(id, "/session");
+  if (elsewhere->owner == resources_.cluster->name()) {
+    return invalid_params({Error{"bad_value", "/node", "must be another running node"}});
+  }
+  return moved_to(id, resources_.cluster->url_of(*elsewhere).value_or(""));
+}
+
+}  // namespace vat

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "server/nats/stream.h"
+
+namespace vat {
+
+/// Key-value bucket of JetStream. Each change of a value has a revision, and a write can require
+/// the revision that it replaces. Other tools for NATS can read it. Thread-safe. Functions that
+/// wait throw NatsError.
+class Bucket {
+ public:
+  struct Entry {
+    std::string key;
+    std::string value;
+    std::uint64_t revision = 0;
+    bool is_removed = false;
+  };
+  /// Revision of a key that has no value.
+  static constexpr std::uint64_t kNone = 0;
+
+  /// Creates the bucket if it does not exist. `life` is the time after which a value is removed
+  /// that is not renewed; 0: never. The connection must outlive the bucket.
+  Bucket(NatsConnection& connection, const std::string& name, std::chrono::milliseconds life);
+
+  /// Returns the value, if the key has one.
+  std::optional<Entry> get(const std::string& key);
+  /// Returns all values.
+  std::vector<Entry> all();
+  /// Replaces the value if the key has the revision, and returns the new revision. Throws NatsError
+  /// (kind `conflict`) if the key has another revision.
+  std::uint64_t put(const std::string& key, const std::string& value, std::uint64_t revision);
+  /// Writes a value if the key has none. Throws NatsError (kind `conflict`) otherwise.
+  std::uint64_t create(const std::string& key, const std::string& value);
+  /// As put(), but calls `done` with the new revision.
+  void put(const std::string& key, const std::string& value, std::uint64_t revision,
+           std::function<void(Stream::Appended)> done);
+  /// Writes the value regardless of the revision, and calls `done` with the new revision.
+  void renew(const std::string& key, const std::string& value,
+             std::function<void(Stream::Appended)> done);
+  /// Removes the value if the key has the revision.
+  void remove(const std::string& key, std::uint64_t revision);
+
+  /// Calls `handler` for each change after the call. Changes during a loss of the connection are
+  /// missing; read all() after it.
+  std::unique_ptr<NatsConnection::Subscription> watch(std::function<void(const Entry&)> handler);
+
+ private:
+  std::string subject(const std::string& key) const { return prefix_ + key; }
+
+  NatsConnection& connection_;
+  const std::string prefix_;
+  const std::string watched_;  ///< prefix of the republished changes
+  Stream stream_;
+};
+
+}  // namespace vat

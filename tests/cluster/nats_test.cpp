@@ -1,0 +1,128 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <future>
+
+#include "server/nats/bucket.h"
+#include "tests/cluster/nats_servers.h"
+#include "tests/support/wait.h"
+
+namespace vat::test::nats_test {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// Returns the kind of the error that `operation` throws, or nothing.
+template <class Operation>
+std::optional<NatsError::Kind> failure(const Operation& operation) {
+  try {
+    operation();
+  } catch (const NatsError& error) {
+    return error.kind();
+  }
+  return {};
+}
+
+class Nats : public testing::Test {
+ protected:
+  NatsServers servers{1};
+  NatsConnection connection{{servers.urls(), "test", {}, {}, {}, {}}};
+};
+
+TEST_F(Nats, AWriteToABucketRequiresTheRevisionThatItReplaces) {
+  Bucket bucket(connection, "sessions", milliseconds(0));
+  EXPECT_EQ(bucket.get("s1"), std::nullopt);
+  const auto first = bucket.create("s1", "a");
+  EXPECT_EQ(failure([&] { bucket.create("s1", "b"); }), NatsError::Kind::conflict);
+  const auto second = bucket.put("s1", "c", first);
+  EXPECT_EQ(failure([&] { bucket.put("s1", "d", first); }), NatsError::Kind::conflict);
+  EXPECT_EQ(bucket.get("s1")->value, "c");
+  EXPECT_EQ(failure([&] { bucket.remove("s1", first); }), NatsError::Kind::conflict);
+  bucket.remove("s1", second);
+  EXPECT_EQ(bucket.get("s1"), std::nullopt);
+  bucket.create("s1", "e");
+  bucket.create("s2", "f");
+  EXPECT_EQ(bucket.all().size(), 2U);
+}
+
+TEST_F(Nats, AWatchReportsChangesAndRemovals) {
+  Bucket bucket(connection, "sessions", milliseconds(0));
+  std::mutex mutex;
+  std::vector<Bucket::Entry> seen;
+  const auto watch = bucket.watch([&](const Bucket::Entry& entry) {
+    const std::lock_guard lock(mutex);
+    seen.push_back(entry);
+  });
+  connection.flush(milliseconds(5000));
+  const auto revision = bucket.create("s1", "a");
+  bucket.remove("s1", revision);
+  ASSERT_TRUE(wait_until([&] {
+    const std::lock_guard lock(mutex);
+    return seen.size() == 2;
+  }));
+  EXPECT_EQ(seen[0].key, "s1");
+  EXPECT_EQ(seen[0].value, "a");
+  EXPECT_EQ(seen[0].revision, revision);
+  EXPECT_FALSE(seen[0].is_removed);
+  EXPECT_TRUE(seen[1].is_removed);
+}
+
+TEST_F(Nats, AValueThatIsNotRenewedIsRemoved) {
+  Bucket bucket(connection, "nodes", milliseconds(200));
+  bucket.create("a", "1");
+  EXPECT_TRUE(wait_until([&] { return !bucket.get("a"); }));
+}
+
+TEST_F(Nats, OnlyOneOfTwoWritersAppendsToASubject) {
+  Stream stream(connection, {"log", "log.*", milliseconds(0), 0, {}});
+  const auto first = stream.append("log.1", "a", 0);
+  stream.append("log.2", "b", 0);
+  EXPECT_EQ(failure([&] { stream.append("log.1", "c", 0); }), NatsError::Kind::conflict);
+  const auto third = stream.append("log.1", "d", first, {{"Epoch", "7"}});
+  EXPECT_EQ(stream.last("log.1")->data, "d");
+  EXPECT_EQ(stream.last("log.1")->headers.at("Epoch"), "7");
+  EXPECT_EQ(stream.next("log.1", first + 1)->sequence, third);
+  EXPECT_FALSE(stream.next("log.1", third + 1));
+  stream.purge("log.1", 1);
+  EXPECT_TRUE(stream.find(first));
+  stream.purge("log.1", third);
+  EXPECT_FALSE(stream.find(first));
+  EXPECT_EQ(stream.find(third)->data, "d");
+}
+
+TEST_F(Nats, ABinaryMessageIsReadAsItWasWritten) {
+  Stream stream(connection, {"log", "log.*", milliseconds(0), 0, {}});
+  std::string bytes(500'000, '\0');
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i * 7);
+  stream.append("log.1", bytes, 0);
+  EXPECT_TRUE(stream.last("log.1")->data == bytes);
+}
+
+TEST_F(Nats, ARequestIsAnsweredByTheSubscriber) {
+  const auto subscription = connection.subscribe("echo", [&](const NatsMessage& request) {
+    connection.publish(request.reply_to, request.data);
+  });
+  connection.flush(milliseconds(5000));
+  EXPECT_EQ(connection.request("echo", "hello", milliseconds(5000)).data, "hello");
+  EXPECT_EQ(failure([&] { connection.request("nobody", "hello", milliseconds(5000)); }),
+            NatsError::Kind::unreachable);
+}
+
+TEST_F(Nats, WithoutServersRequestsFailUntilTheConnectionIsBack) {
+  Stream stream(connection, {"log", "log.*", milliseconds(0), 0, {}});
+  std::promise<void> back;
+  connection.on_reconnect([&] { back.set_value(); });
+  servers.kill(0);
+  ASSERT_TRUE(wait_until([&] { return !connection.is_connected(); }));
+  EXPECT_EQ(failure([&] { stream.append("log.1", "a", 0); }), NatsError::Kind::disconnected);
+  servers.restart(0);
+  back.get_future().wait();
+  std::uint64_t sequence = 0;
+  // JetStream reads its files after the port accepts.
+  EXPECT_TRUE(
+      wait_until([&] { return !failure([&] { sequence = stream.append("log.1", "a", 0); }); }));
+  EXPECT_EQ(sequence, 1U);
+}
+
+}  // namespace
+}  // namespace vat::test::nats_test

@@ -1,0 +1,75 @@
+#include "server/cluster/node_table.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "tests/support/manual_clock.h"
+
+namespace vat::test::node_table_test {
+namespace {
+
+using std::chrono::milliseconds;
+using testing::ElementsAre;
+using testing::UnorderedElementsAre;
+
+NodeInfo make_node(const std::string& name) {
+  return {name, "1", "ws://" + name + "/ws", "baseline", "1.0", 2.5, true};
+}
+
+TEST(NodeTableTest, ANodeIsReadAsItWasWritten) {
+  const auto read = read_node(write_node(make_node("a")));
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->name, "a");
+  EXPECT_EQ(read->url, "ws://a/ws");
+  EXPECT_EQ(read->room, 2.5);
+  EXPECT_TRUE(read->accepts);
+  EXPECT_FALSE(read_node("{}"));
+  EXPECT_FALSE(read_node("no JSON"));
+}
+
+TEST(NodeTableTest, ANodeWithoutRenewalIsSilent) {
+  ManualClock clock;
+  NodeTable table(clock);
+  table.note(make_node("a"), 1);
+  clock.advance(milliseconds(1000));
+  table.note(make_node("b"), 2);
+  clock.advance(milliseconds(500));
+  EXPECT_EQ(table.silence_of("a"), milliseconds(1500));
+  EXPECT_TRUE(table.is_seen_within("a", milliseconds(1501)));
+  EXPECT_FALSE(table.is_seen_within("a", milliseconds(1500)));
+  EXPECT_EQ(table.seen_within(milliseconds(1000)).size(), 1U);
+  EXPECT_EQ(table.revision_of("b"), 2U);
+  table.forget("b");
+  EXPECT_FALSE(table.is_seen_within("b", milliseconds(10'000)));
+}
+
+TEST(NodeTableTest, AnUnknownNodeIsSilentSinceTheStartOfThisProcess) {
+  ManualClock clock;
+  NodeTable table(clock);
+  clock.advance(milliseconds(700));
+  EXPECT_EQ(table.silence_of("a"), milliseconds(700));
+}
+
+TEST(NodeTableTest, TheEndOfANodeDoesNotChangeTheOrderOfTheOthers) {
+  for (std::uint64_t session = 1; session <= 100; ++session) {
+    auto all = rank_nodes(session, {"a", "b", "c"});
+    ASSERT_THAT(all, UnorderedElementsAre("a", "b", "c"));
+    EXPECT_EQ(rank_nodes(session, {"c", "b", "a"}), all);
+    const std::vector<std::string> rest(all.begin() + 1, all.end());
+    EXPECT_THAT(rank_nodes(session, rest), ElementsAre(all[1], all[2]));
+  }
+}
+
+TEST(NodeTableTest, SessionsAreSpreadOverTheNodes) {
+  std::map<std::string, int> first;
+  for (std::uint64_t session = 1; session <= 300; ++session) {
+    ++first[rank_nodes(session, {"a", "b", "c"}).front()];
+  }
+  for (const auto& [name, count] : first) EXPECT_GT(count, 70) << name;
+  EXPECT_EQ(first.size(), 3U);
+}
+
+}  // namespace
+}  // namespace vat::test::node_table_test

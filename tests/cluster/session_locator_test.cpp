@@ -1,0 +1,95 @@
+#include "server/cluster/session_locator.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/cluster/nats_servers.h"
+#include "tests/support/wait.h"
+
+namespace vat::test::session_locator_test {
+namespace {
+
+class SessionLocatorTest : public testing::Test {
+ protected:
+  LocatedSession make(SessionLocator& from, const std::string& name) {
+    LocatedSession session;
+    session.number = from.next_number();
+    session.name = name;
+    session.owner = "a";
+    session.instruction_set = "baseline";
+    return session;
+  }
+  template <class Operation>
+  static bool conflicts(const Operation& operation) {
+    try {
+      operation();
+    } catch (const NatsError& error) {
+      return error.kind() == NatsError::Kind::conflict;
+    }
+    return false;
+  }
+
+  NatsServers servers{1};
+  NatsConnection connection{{servers.urls(), "test", {}, {}, {}, {}}};
+  SessionLocator locator{connection};
+};
+
+TEST_F(SessionLocatorTest, OneOfTwoNodesTakesASession) {
+  const LocatedSession created = locator.create(make(locator, "pool"));
+  EXPECT_EQ(created.epoch, 1U);
+  const LocatedSession taken = locator.take(created, "b");
+  EXPECT_EQ(taken.owner, "b");
+  EXPECT_EQ(taken.epoch, 2U);
+  EXPECT_TRUE(conflicts([&] { locator.take(created, "c"); }));
+  EXPECT_TRUE(conflicts([&] { locator.renew(created); }));
+  EXPECT_EQ(locator.read(created.number)->owner, "b");
+  const LocatedSession released = locator.release(taken, "c");
+  EXPECT_EQ(released.owner, "");
+  EXPECT_EQ(released.successor, "c");
+  EXPECT_EQ(locator.take(released, "c").epoch, 3U);
+}
+
+TEST_F(SessionLocatorTest, NumbersAndNamesAreUnique) {
+  const LocatedSession first = locator.create(make(locator, "pool"));
+  EXPECT_TRUE(conflicts([&] { locator.create(make(locator, "pool")); }));
+  const LocatedSession other = locator.create(make(locator, "lake"));
+  EXPECT_GT(other.number, first.number);
+  EXPECT_TRUE(conflicts([&] { locator.rename(other, "pool"); }));
+  const LocatedSession renamed = locator.rename(first, "sea");
+  locator.rename(other, "pool");
+  locator.remove(renamed);
+  locator.create(make(locator, "sea"));
+  // Sessions without a name do not conflict.
+  locator.create(make(locator, ""));
+  locator.create(make(locator, ""));
+}
+
+TEST_F(SessionLocatorTest, TheNameOfANodeThatEndedDuringACreationIsFree) {
+  Bucket bucket(connection, "vat-sessions", std::chrono::milliseconds(0));
+  bucket.create("name.706f6f6c", "77");  // "pool", for a session that does not exist
+  EXPECT_EQ(locator.create(make(locator, "pool")).name, "pool");
+}
+
+TEST_F(SessionLocatorTest, TheCopyFollowsOtherNodes) {
+  locator.watch([](const LocatedSession&) {});
+  connection.flush(std::chrono::milliseconds(5000));
+  SessionLocator other(connection);
+  const LocatedSession created = other.create(make(other, "pool"));
+  ASSERT_TRUE(wait_until([&] { return locator.find(created.number).has_value(); }));
+  EXPECT_EQ(locator.find(created.number)->name, "pool");
+  other.remove(created);
+  EXPECT_TRUE(wait_until([&] { return locator.all().empty(); }));
+}
+
+TEST_F(SessionLocatorTest, ARefreshFindsWhatTheWatchHasMissed) {
+  const LocatedSession created = locator.create(make(locator, "pool"));
+  SessionLocator other(connection);
+  other.refresh();
+  ASSERT_EQ(other.all().size(), 1U);
+  locator.remove(created);
+  other.refresh();
+  EXPECT_TRUE(other.all().empty());
+}
+
+}  // namespace
+}  // namespace vat::test::session_locator_test

@@ -1,0 +1,208 @@
+#include "server/cluster/session_stream.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <boost/asio/thread_pool.hpp>
+#include <future>
+
+#include "server/cluster/session_reader.h"
+#include "server/storage/sqlite/compression.h"
+#include "tests/cluster/nats_servers.h"
+#include "tests/support/wait.h"
+
+namespace vat::test::session_stream_test {
+namespace {
+
+using testing::ElementsAre;
+using Failure = std::optional<StorageError::Kind>;
+
+constexpr std::uint64_t kSession = 7;
+
+LogEntry make_entry(std::uint64_t sequence, const std::string& params = "{}") {
+  return {sequence, 10 * sequence, 10 * sequence, 1, "world.set_gravity", params, false};
+}
+
+std::vector<std::uint64_t> sequences_of(const SessionImage& image) {
+  std::vector<std::uint64_t> sequences;
+  for (const LogEntry& entry : image.entries) sequences.push_back(entry.sequence);
+  return sequences;
+}
+
+class SessionStreamTest : public testing::Test {
+ protected:
+  ~SessionStreamTest() override {
+    connection.close();
+    threads.join();
+  }
+
+  std::shared_ptr<SessionStream> open(SessionStream::Place place) {
+    place.session = kSession;
+    return std::make_shared<SessionStream>(
+        streams, lease, clock, threads.get_executor(), std::move(place), [this] { ++lost; },
+        [](const std::string&) {});
+  }
+  std::shared_ptr<SessionStream> create() {
+    SessionStream::Place place;
+    place.epoch = 1;
+    return open(std::move(place));
+  }
+  static Failure wait(const std::function<void(Journal::Done)>& start) {
+    std::promise<Failure> done;
+    start([&done](Failure failure) { done.set_value(failure); });
+    return done.get_future().get();
+  }
+  static Failure append(SessionStream& stream, const std::vector<LogEntry>& entries) {
+    return wait([&](Journal::Done done) { stream.append(entries, std::move(done)); });
+  }
+  /// Takes the session for the next owner.
+  SessionImage take(std::uint64_t epoch) {
+    LocatedSession session;
+    session.number = kSession;
+    session.owner = "b";
+    session.epoch = epoch;
+    return take_image(streams, session);
+  }
+  static SessionStream::Place place_after(const SessionImage& image, std::uint64_t epoch) {
+    SessionStream::Place place;
+    place.epoch = epoch;
+    place.last_message = image.last_message;
+    place.last_entry = image.entries.back().sequence;
+    place.manifest = image.manifest;
+    place.manifest_message = image.manifest_message;
+    return place;
+  }
+  static void write_state(SessionStream& stream, std::uint64_t sequence, std::size_t bytes) {
+    Checkpoint state{kSession, 10 * sequence, sequence, "{\"tick\": 1}", {}};
+    state.state.resize(bytes);
+    for (std::size_t i = 0; i < bytes; ++i) {
+      state.state[i] = static_cast<std::uint8_t>(i * i + sequence);
+    }
+    state.state = compress(state.state);
+    stream.write_state(state, make_entry(1), stream.mark(), true);
+    EXPECT_EQ(wait([&](Journal::Done done) { stream.flush(std::move(done)); }), Failure());
+  }
+
+  NatsServers servers{1};
+  NatsConnection connection{{servers.urls(), "test", {}, {}, {}, {}}};
+  SystemClock clock;
+  Lease lease{clock};
+  boost::asio::thread_pool threads{2};
+  ClusterStreams streams{connection};
+  std::atomic<int> lost = 0;
+};
+
+TEST_F(SessionStreamTest, AnotherNodeReadsWhatWasStored) {
+  const auto stream = create();
+  EXPECT_EQ(append(*stream, {make_entry(1), make_entry(2, std::string(100'000, 'x'))}), Failure());
+  EXPECT_EQ(append(*stream, {make_entry(3)}), Failure());
+  stream->refuse(3);
+  EXPECT_EQ(wait([&](auto done) { stream->reach(44, done); }), Failure());
+  EXPECT_EQ(wait([&](auto done) { stream->configure("lake", "{}", done); }), Failure());
+  SessionProgress progress;
+  progress.position = 41;
+  progress.hash = 0xffffffffffffffff;
+  progress.participants = "[]";
+  EXPECT_EQ(wait([&](auto done) { stream->write_progress(progress, done); }), Failure());
+  const SessionImage image = take(2);
+  ASSERT_THAT(sequences_of(image), ElementsAre(1, 2, 3));
+  EXPECT_EQ(image.entries[1].params, std::string(100'000, 'x'));
+  EXPECT_TRUE(image.entries[2].refused);
+  EXPECT_EQ(image.stored.reached, 44U);
+  EXPECT_EQ(image.stored.name, "lake");
+  ASSERT_TRUE(image.stored.progress);
+  EXPECT_EQ(image.stored.progress->position, 41U);
+  EXPECT_EQ(image.stored.progress->hash, 0xffffffffffffffff);
+  EXPECT_FALSE(image.state);
+}
+
+TEST_F(SessionStreamTest, ThePreviousOwnerStoresNothingAfterATakeOver) {
+  const auto old = create();
+  ASSERT_EQ(append(*old, {make_entry(1)}), Failure());
+  const SessionImage image = take(2);
+  EXPECT_EQ(append(*old, {make_entry(2)}), StorageError::Kind::unreachable);
+  EXPECT_TRUE(wait_until([&] { return lost == 1; }));
+  EXPECT_EQ(append(*old, {make_entry(2)}), StorageError::Kind::unreachable);
+  const auto next = open(place_after(image, 2));
+  EXPECT_EQ(append(*next, {make_entry(2)}), Failure());
+  EXPECT_THAT(sequences_of(take(3)), ElementsAre(1, 2));
+}
+
+TEST_F(SessionStreamTest, ATakeOverBeginsAtTheNewestState) {
+  const auto stream = create();
+  for (std::uint64_t i = 1; i <= 4; ++i) ASSERT_EQ(append(*stream, {make_entry(i)}), Failure());
+  write_state(*stream, 2, 1'000'000);  // several chunks
+  ASSERT_EQ(append(*stream, {make_entry(5)}), Failure());
+  write_state(*stream, 4, 1000);
+  const SessionImage image = take(2);
+  ASSERT_TRUE(image.state);
+  EXPECT_EQ(image.state->sequence, 4U);
+  EXPECT_EQ(decompress(image.state->state, kMaxStateBytes).size(), 1000U);
+  EXPECT_THAT(sequences_of(image), ElementsAre(1, 5));
+}
+
+TEST_F(SessionStreamTest, AStateIsReadAsItWasWritten) {
+  const auto stream = create();
+  ASSERT_EQ(append(*stream, {make_entry(1)}), Failure());
+  write_state(*stream, 1, 2'000'000);
+  const SessionImage image = take(2);
+  ASSERT_TRUE(image.state);
+  const auto bytes = decompress(image.state->state, kMaxStateBytes);
+  ASSERT_EQ(bytes.size(), 2'000'000U);
+  EXPECT_EQ(bytes[1'999'999], static_cast<std::uint8_t>(1'999'999ULL * 1'999'999ULL + 1));
+}
+
+TEST_F(SessionStreamTest, MessagesBeforeTheOlderOfTwoStatesAreRemoved) {
+  const auto stream = create();
+  for (std::uint64_t i = 1; i <= 9; ++i) {
+    ASSERT_EQ(append(*stream, {make_entry(i)}), Failure());
+    write_state(*stream, i, 1000);
+  }
+  EXPECT_TRUE(wait_until([&] {
+    const auto first = streams.logs.next(log_subject(kSession), 1);
+    return first && first->sequence >= 8;
+  }));
+  const SessionImage image = take(2);
+  EXPECT_EQ(image.state->sequence, 9U);
+  EXPECT_THAT(sequences_of(image), ElementsAre(1));
+}
+
+TEST_F(SessionStreamTest, AStateOfThePreviousOwnerDoesNotCount) {
+  const auto old = create();
+  ASSERT_EQ(append(*old, {make_entry(1)}), Failure());
+  write_state(*old, 1, 1000);
+  const SessionImage image = take(2);
+  Checkpoint state{kSession, 500, 1, "{}", compress(std::vector<std::uint8_t>(10))};
+  old->write_state(state, make_entry(1), old->mark(), true);
+  wait([&](auto done) { old->flush(done); });
+  EXPECT_EQ(take(3).state->position, image.state->position);
+}
+
+TEST_F(SessionStreamTest, WithoutServersItRefusesAtOnceAndResumesLater) {
+  const auto stream = create();
+  ASSERT_EQ(append(*stream, {make_entry(1)}), Failure());
+  servers.kill(0);
+  ASSERT_TRUE(wait_until([&] { return !connection.is_connected(); }));
+  EXPECT_EQ(append(*stream, {make_entry(2)}), StorageError::Kind::unreachable);
+  servers.restart(0);
+  ASSERT_TRUE(wait_until([&] { return connection.is_connected(); }));
+  EXPECT_EQ(append(*stream, {make_entry(2)}), Failure());
+  EXPECT_THAT(sequences_of(take(2)), ElementsAre(1, 2));
+}
+
+TEST_F(SessionStreamTest, RecordsAreReadAsTheyWereWritten) {
+  EXPECT_THROW(read_records(""), StorageError);
+  EXPECT_THROW(read_records("j{"), StorageError);
+  EXPECT_THROW(read_records("j[{}]"), StorageError);
+  EXPECT_THROW(read_records("zno frame"), StorageError);
+  EXPECT_THROW(unpack_state("no state"), StorageError);
+  EXPECT_THROW(unpack_state("999\n"), StorageError);
+  EXPECT_THROW(read_manifest("[]"), StorageError);
+  const auto records = read_records(write_records({OwnerRecord{"b", 3}, RefusedRecord{9}}));
+  ASSERT_EQ(records.size(), 2U);
+  EXPECT_EQ(std::get<OwnerRecord>(records[0]).epoch, 3U);
+  EXPECT_EQ(std::get<RefusedRecord>(records[1]).sequence, 9U);
+}
+
+}  // namespace
+}  // namespace vat::test::session_stream_test
