@@ -14,7 +14,7 @@ LEAST_SCRIPTS = 40
 # Error kinds and events that a client cannot cause, the end of the server, and clusters.
 NOT_SHOWN = {
     "internal_error", "storage_failed", "not_recovered", "session.diverged", "session.storage",
-    "server.draining", "server.drain", "moved", "session.moved",
+    "server.draining", "server.drain", "server.move", "moved", "session.moved",
 }
 # Limits that apply before a WebSocket is open or below its messages.
 BELOW_MESSAGES = {"handshake_seconds", "ping_seconds"}
