@@ -28,6 +28,7 @@ ELSEWHERE = {
     "./vat test": "contains this test",
     "./vat bench validate": "takes hours; the tests cli/bench_* run short versions",
     "docker compose --file docker/compose.yaml up --build": "needs a container engine",
+    "docker compose --file docker/compose.cluster.yaml up --build": "needs a container engine",
     "docker build --file docker/Dockerfile --tag vat .": "needs a container engine",
     "export VAT_PUBLIC_NAME=vat.example.org": "needs a container engine",
     "sudo apt-get install debootstrap curl git": "installs a whole system, with the rights of root",
