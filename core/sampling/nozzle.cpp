@@ -10,6 +10,8 @@
 namespace vat {
 namespace {
 
+constexpr Real kIntervalRounding = 1e-6;  // of an interval between two layers
+
 /// The opening in its own axes, with z along the flow, and the depth of one layer.
 Shape opening_of(const Emitter& emitter, Real spacing, int dimensions) {
   if (emitter.size)
@@ -36,9 +38,8 @@ Mat3 axes_of(const Emitter& emitter, int dimensions) {
 
 std::uint64_t Nozzle::entered(Real time) const {
   VAT_CHECK(interval > 0);
-  constexpr Real kRounding = 1e-6;  // of an interval
   const Real next =
-      std::floor((time - from) / interval + static_cast<Real>(inside) + kRounding) + 1;
+      std::floor((time - from) / interval + static_cast<Real>(inside) + kIntervalRounding) + 1;
   if (!(next > 0)) return 0;
   return next < static_cast<Real>(layers) ? static_cast<std::uint64_t>(next) : layers;
 }
@@ -73,9 +74,8 @@ Nozzle make_nozzle(const Scene& scene, const Emitter& emitter) {
   nozzle.inside =
       static_cast<std::uint64_t>(std::ceil(material.liquid->support_radius / body->spacing));
   nozzle.from = emitter.from;
-  constexpr Real kRounding = 1e-6;
   nozzle.layers = static_cast<std::uint64_t>(
-      std::ceil((emitter.until - emitter.from) / nozzle.interval - kRounding));
+      std::ceil((emitter.until - emitter.from) / nozzle.interval - kIntervalRounding));
   return nozzle;
 }
 

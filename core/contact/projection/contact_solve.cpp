@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <ranges>
 
 #include "core/contact/projection/cross_matrix.h"
 #include "core/contact/projection/sweep_progress.h"
@@ -201,7 +200,9 @@ Real relax(std::span<SweepRow> rows) {
   for (SweepRow& row : rows) row.gradient = -row.impulse();
   Real greatest = 0;
   for (SweepRow& row : rows) greatest = std::max(greatest, row.relax());
-  for (SweepRow& row : std::views::reverse(rows)) greatest = std::max(greatest, row.relax());
+  for (auto row = rows.rbegin(); row != rows.rend(); ++row) {
+    greatest = std::max(greatest, row->relax());
+  }
   return greatest;
 }
 

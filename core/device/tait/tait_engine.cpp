@@ -178,7 +178,9 @@ Status TaitEngine::read(State& state) {
   state.forces.particle.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     const Float4& a = accelerations_[i];
-    state.forces.particle[i] = model_->mass[i] * Vec3(a.x, a.y, a.z);
+    state.forces.particle[i] =
+        model_->mass[i] *
+        Vec3(static_cast<Real>(a.x), static_cast<Real>(a.y), static_cast<Real>(a.z));
   }
   state.forces_current = true;
   state.bound = model_->damping.any ? find_bound_of_bodies(*model_) : Oscillation{};
