@@ -4,6 +4,7 @@
 
 #include "server/cli/common/command.h"
 #include "tests/bench/accuracy/accuracy.h"
+#include "tests/bench/cluster/cluster.h"
 #include "tests/bench/codec/codec.h"
 #include "tests/bench/compare.h"
 #include "tests/bench/document/document.h"
@@ -46,6 +47,7 @@ int run_command(int argc, char** argv) {
   add_faults_command(app, exit_code);
   add_durability_command(app, exit_code);
   add_recovery_command(app, exit_code);
+  add_cluster_command(app, exit_code);
   add_output_command(app, exit_code);
   add_race_command(app, exit_code);
   add_document_command(app, exit_code);
