@@ -99,6 +99,16 @@ TEST(Tune, InterruptedRunsWriteNothing) {
   EXPECT_THAT(folder.names(), IsEmpty());
 }
 
+TEST(Tune, BenchComparesTheChoicesWithAnExhaustiveSearch) {
+  const TemporaryFolder folder;
+  const ProgramResult result = run_bench(
+      {"tune", "--case", "rigid-stack", "--until", "0.02", "--output", folder.file("results")});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(
+      lines_of(read_file(folder.file("results") + "/tune.csv")),
+      ElementsAre(StartsWith("scene,candidates,dropped,front,"), StartsWith("rigid-stack,47,")));
+}
+
 TEST(Tune, RefusesWrongOptions) {
   for (const auto& [options, named] : std::vector<std::pair<std::vector<std::string>, std::string>>{
            {{"--write", "out.json"}, "--error or --real-time"},
