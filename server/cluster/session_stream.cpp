@@ -74,7 +74,8 @@ void SessionStream::configure(const std::string& name, const std::string& settin
           self->renamed_(name);
         } catch (const NatsError& error) {
           log_warning("session s{}: its name stays: {}", self->session_, error.what());
-          return done(StorageError::Kind::failed);
+          return done(error.kind() == NatsError::Kind::conflict ? StorageError::Kind::locked
+                                                                : StorageError::Kind::unreachable);
         }
         {
           const std::lock_guard lock(self->mutex_);

@@ -120,10 +120,7 @@ std::variant<SessionId, RpcError> SessionDirectory::create(std::string name, con
     log_error("a session cannot be stored: {}", error.what());
     return storage_failed(error.kind());
   } catch (const NatsError& error) {
-    if (error.kind() == NatsError::Kind::conflict) {
-      return invalid_params(
-          {Error{"bad_value", "/name", "must differ from the names of the cluster's sessions"}});
-    }
+    if (error.kind() == NatsError::Kind::conflict) return name_in_use();
     log_error("a session cannot be stored: {}", error.what());
     return storage_failed(StorageError::Kind::unreachable);
   }

@@ -71,6 +71,11 @@ RpcError internal_error() {
   return {ErrorKind::internal_error, "a fault of the server; see its log"};
 }
 
+RpcError name_in_use() {
+  return invalid_params(
+      {Error{"bad_value", "/name", "must differ from the names of the cluster's sessions"}});
+}
+
 RpcError not_joined() {
   return {ErrorKind::not_joined, "this method needs a joined session"};
 }

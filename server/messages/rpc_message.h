@@ -40,6 +40,8 @@ RpcError invalid_params(const Errors& errors);
 /// Returns an error for a fault of this program. Details are only in the log.
 RpcError internal_error();
 RpcError not_joined();
+/// Returns an error for the parameter `name`: another session of the cluster has this name.
+RpcError name_in_use();
 /// Returns an error for a missing session. Without a path, the session has ended while a command
 /// waited.
 RpcError no_such_session(std::string_view session, std::string_view path = {});

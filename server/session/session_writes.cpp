@@ -64,7 +64,9 @@ void Session::resume_turns() {
 
 void Session::store_settings(PendingReply reply, SessionSettings settings) {
   const auto waiting = std::make_shared<PendingReply>(std::move(reply));
-  const auto apply = [this, waiting, settings](const Failure& failure) {
+  const auto apply = [this, waiting, settings](std::optional<StorageError::Kind> refused) {
+    if (refused == StorageError::Kind::locked) return waiting->answer(name_in_use());
+    const Failure failure = core_->history().note_write(refused);
     if (failure) return waiting->answer(*failure);
     core_->people().configure(settings);
     update_summary();
@@ -73,9 +75,9 @@ void Session::store_settings(PendingReply reply, SessionSettings settings) {
     waiting->answer(std::move(content));
   };
   if (core_->history().log() == nullptr) return apply({});
-  write_then(
-      [settings](SessionLog& log, Journal::Done done) {
-        log.configure(settings.name, write_settings(settings).dump(), std::move(done));
+  wait_then(
+      [log = core_->history().log(), settings](Journal::Done done) {
+        log->configure(settings.name, write_settings(settings).dump(), std::move(done));
       },
       apply);
 }

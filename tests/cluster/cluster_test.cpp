@@ -254,13 +254,17 @@ TEST(Cluster, EachNodeListsCreatesMovesAndClosesSessions) {
   EXPECT_EQ(
       there.call("server.move", {{"session", id}, {"node", "z"}}).at("error").at("data").at("path"),
       "/node");
-  nodes.join(id, second);  // waits for the session
+  there.result("session.join", {{"session", id}});  // waits for the session
+  const Json renamed = there.call("session.configure", {{"name", "pool"}});
+  EXPECT_EQ(renamed.at("error").at("data").at("path"), "/name");
+  there.result("session.configure", {{"name", "sea"}});
+  admin.result("session.create", {{"name", "lake"}, {"scene", "pool"}});
   there.result("session.close", {{"session", id}});
   EXPECT_TRUE(wait_until([&] {
     const Json listed = admin.result("session.list");
-    return listed.at("sessions").size() == 1;
+    return listed.at("sessions").size() == 2;
   }));
-  admin.result("session.create", {{"name", "lake"}, {"scene", "pool"}});
+  admin.result("session.create", {{"name", "sea"}, {"scene", "pool"}});
 }
 
 }  // namespace
