@@ -183,7 +183,9 @@ ChainRun run_chain(int steps) {
   constexpr Real kTime = 0.015;  // 1 radian of the contact, which opens after a quarter period
   CoupledSimulation coupled(
       Simulation::create(chain_and_mass(kTime / steps, Eigen::VectorXd::Zero(kLinks))).value());
-  EXPECT_TRUE(coupled.attach(1, std::make_unique<ChainBody>(kChainStiffness)));
+  auto owned = std::make_unique<ChainBody>(kChainStiffness);
+  const ChainBody& chain = *owned;
+  EXPECT_TRUE(coupled.attach(1, std::move(owned)));
   ChainRun run;
   for (int n = 0; n < steps; ++n) {
     EXPECT_TRUE(coupled.advance(1));
@@ -197,6 +199,7 @@ ChainRun run_chain(int steps) {
   }
   const Eigen::VectorXd exact = exact_displacements(kTime);
   const std::vector<BodyView> bodies = coupled.simulation().bodies();
+  EXPECT_NEAR(chain.received.x(), -1.5 * bodies[1].velocities[0].x(), 1e-14);
   for (Eigen::Index i = 0; i < kLinks; ++i) {
     const Real place = bodies[0].positions[static_cast<std::size_t>(i)].x();
     run.error = std::max(run.error, std::abs(place - 0.5 * static_cast<Real>(i) - exact[i]));

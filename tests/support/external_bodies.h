@@ -127,6 +127,7 @@ class ChainBody final : public ExternalBody {
 
   void advance(const CouplingInterval& interval, const ReceivedImpulses& impulses,
                BodyMotion& motion) override {
+    received += impulses.linear;
     push(impulses.particles);
     move(interval.length());
     push(impulses.particles);
@@ -147,6 +148,8 @@ class ChainBody final : public ExternalBody {
     }
     return matrix;
   }
+
+  Vec3 received = Vec3::Zero();  ///< sum of all impulses [N s]
 
  private:
   void push(std::span<const Vec3> impulses) {

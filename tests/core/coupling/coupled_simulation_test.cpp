@@ -228,5 +228,17 @@ TEST(SetBodyMotion, ReplacesPositionsAndVelocities) {
   EXPECT_FALSE(simulation.set_body_motion(99, motion));
 }
 
+TEST(SetBodyMotion, EndsTheForcesAtTheLastPosition) {
+  Scene scene = bob_and_cubes();
+  scene.bodies[0].position = {0, 0, -0.6};  // overlaps a cube
+  Simulation simulation = Simulation::create(scene).value();
+  simulation.advance(2);
+  BodyMotion motion;
+  motion.pose = RigidPose{{3, 0, 1}, Quat::Identity(), Vec3::Zero(), Vec3::Zero()};
+  ASSERT_TRUE(simulation.set_body_motion(1, motion));
+  simulation.advance(1);
+  EXPECT_LE((simulation.bodies()[0].pose->velocity - 1e-3 * Vec3(0, 0, -9.81)).norm(), 1e-14);
+}
+
 }  // namespace
 }  // namespace vat::test::coupled_simulation_test
