@@ -119,8 +119,8 @@ struct BodyDescription {
   /// A driven body follows this motion from its position at time 0, independent of forces.
   std::optional<SlideMotion> motion{};
   std::optional<Axle> axle{};
-  /// Least number of parts of a step that the body takes with local control; rounded up to a power
-  /// of two. Without effect on liquids and other controls.
+  /// Least number of parts of Numerics::step that the body takes with local control; rounded up to
+  /// a power of two. Without effect on liquids and other controls.
   std::uint32_t sub_steps = 1;
 };
 

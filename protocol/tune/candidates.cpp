@@ -49,6 +49,7 @@ class Method {
          Real trusted_step)
       : scene_(std::move(scene)), tick_(scene_.numerics.tick) {
     scene_.numerics.integrator = integrator;
+    scene_.numerics.control = StepControl::fixed;
     Real limit = tick_;
     for (const StepLimit& step_limit : find_step_limits(scene_, samples)) {
       limit = std::min(limit, step_limit.step);
@@ -130,15 +131,22 @@ std::vector<Scene> solver_variants(const Scene& scene, bool has_liquid) {
 
 /// Returns the numerics of the references, from the scene's own method: velocity Verlet if the
 /// scene supports it, and otherwise the scene's integrator.
+/// Returns the step of the scene if it is fixed, and otherwise 0: the longest step of variable
+/// control is no stable fixed step.
+Real trusted_step_of(const Scene& scene) {
+  return scene.numerics.control == StepControl::fixed ? scene.numerics.step : 0;
+}
+
 void set_references(const Scene& own, const std::vector<SampledBody>& samples, CandidateSet& set) {
   Scene tight = own;
   tight.incompressible.density_tolerance =
       std::min(own.incompressible.density_tolerance, kReferenceVolumeTolerance);
   tight.incompressible.divergence_tolerance =
       std::min(own.incompressible.divergence_tolerance, kReferenceVolumeTolerance);
-  Method method(tight, IntegratorId::velocity_verlet, samples, own.numerics.step);
+  const Real trusted_step = trusted_step_of(own);
+  Method method(tight, IntegratorId::velocity_verlet, samples, trusted_step);
   if (!method.is_valid(StepControl::fixed)) {
-    method = Method(tight, own.numerics.integrator, samples, own.numerics.step);
+    method = Method(tight, own.numerics.integrator, samples, trusted_step);
   }
   const Real tolerance = own.numerics.tolerance;
   set.fine = method.with(StepControl::fixed, kFineShare * method.longest(), tolerance);
@@ -198,7 +206,7 @@ CandidateSet find_candidates(const Scene& scene) {
   std::vector<Candidate> all{own};
   for (const Scene& variant : solver_variants(resolved, set.has_liquid)) {
     const bool is_own = variant.pressure_solver == scene.pressure_solver;
-    const Real trusted_step = is_own ? resolved.numerics.step : 0;
+    const Real trusted_step = is_own ? trusted_step_of(resolved) : 0;
     for (const IntegratorId integrator : kIntegrators) {
       Method(variant, integrator, samples, trusted_step).append_all(all);
     }

@@ -74,7 +74,7 @@ void ClusterNode::check_data_folder() const {
     throw StorageError(StorageError::Kind::failed,
                        storage_.folder() +
                            " has the sessions of a server without a cluster; a "
-                           "node needs a data folder of its own");
+                           "node needs a separate data folder");
   }
   std::ofstream(marker) << settings_.node << '\n';
 }

@@ -142,8 +142,10 @@ void ClusterNode::check_sessions(Time sent) {
 
 bool ClusterNode::is_silent(const std::string& node) {
   const auto entry = node_bucket_.get(node);
-  const auto known = nodes_.revision_of(node);
-  if (!entry || entry->revision == known) return true;
+  if (!entry) return true;
+  if (entry->revision == nodes_.revision_of(node)) {
+    return nodes_.silence_of(node) >= Lease::kOthersTime;
+  }
   if (auto info = read_node(entry->value)) nodes_.note(*std::move(info), entry->revision);
   return false;
 }
@@ -158,7 +160,9 @@ void ClusterNode::take(std::uint64_t session) {
   try {
     const auto before = locator_.read(session);
     const bool is_other = before && !before->owner.empty() && before->owner != name();
-    if (!before || (is_other && !is_silent(before->owner))) return unreserve(false);
+    // Another node may have taken it, or released it to another one, since it was looked at.
+    if (!before || !is_wanted(*before)) return unreserve(false);
+    if (is_other && !is_silent(before->owner)) return unreserve(false);
     const LocatedSession entry = locator_.take(*before, name());
     const SessionImage image = take_image(streams_, entry);
     store_image(storage_, image);

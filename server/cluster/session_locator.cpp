@@ -1,6 +1,7 @@
 #include "server/cluster/session_locator.h"
 
 #include <charconv>
+#include <system_error>
 #include <utility>
 
 #include "protocol/json/json_reader.h"
@@ -8,6 +9,17 @@
 
 namespace vat {
 namespace {
+
+/// Returns the number of a session in a value of the bucket. Throws NatsError.
+std::uint64_t number_of(const std::string& text) {
+  std::uint64_t number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, code] = std::from_chars(text.data(), end, number);
+  if (code != std::errc() || stop != end) {
+    throw NatsError(NatsError::Kind::refused, "the directory contains '" + text + "'");
+  }
+  return number;
+}
 
 constexpr std::string_view kSessionKey = "session.";
 constexpr const char* kCounterKey = "last_number";
@@ -131,7 +143,7 @@ std::uint64_t SessionLocator::next_number() {
   for (int i = 0; i < kAttempts; ++i) {
     try {
       const auto last = bucket_.get(kCounterKey);
-      const std::uint64_t next = last ? std::stoull(last->value) + 1 : 1;
+      const std::uint64_t next = last ? number_of(last->value) + 1 : 1;
       if (last) {
         bucket_.put(kCounterKey, std::to_string(next), last->revision);
       } else {
@@ -154,7 +166,8 @@ void SessionLocator::take_name(const std::string& name, std::uint64_t number) {
     if (error.kind() != NatsError::Kind::conflict) throw;
     // A node that ended during a creation or removal may have left the name without a session.
     const auto entry = bucket_.get(key_of_name(name));
-    if (entry && read(std::stoull(entry->value))) throw;
+    if (entry && entry->value == value) return;
+    if (entry && read(number_of(entry->value))) throw;
     bucket_.put(key_of_name(name), value, entry ? entry->revision : Bucket::kNone);
   }
 }

@@ -1,6 +1,8 @@
 #include "server/cluster/session_reader.h"
 
 #include <algorithm>
+#include <exception>
+#include <future>
 #include <string>
 #include <utility>
 
@@ -129,9 +131,10 @@ SessionImage take_image(ClusterStreams& streams, const LocatedSession& session) 
   return image;
 }
 
-void store_image(Storage& storage, const SessionImage& image) {
+namespace {
+
+void replace_session(Storage& storage, const SessionImage& image) {
   const std::uint64_t number = image.stored.number;
-  storage.flush();
   storage.checkpoints().remove(number);
   storage.recent_states().remove(number);
   storage.sessions().replace(image.stored, image.entries);
@@ -139,6 +142,23 @@ void store_image(Storage& storage, const SessionImage& image) {
   Checkpoint state = *image.state;
   state.state = decompress(state.state, kMaxStateBytes);
   storage.checkpoints().write(state);
+}
+
+}  // namespace
+
+void store_image(Storage& storage, const SessionImage& image) {
+  storage.flush();
+  // On the storage's thread, so that Storage::remove_closed() does not remove the checkpoint.
+  std::promise<void> done;
+  storage.post([&] {
+    try {
+      replace_session(storage, image);
+      done.set_value();
+    } catch (...) {
+      done.set_exception(std::current_exception());
+    }
+  });
+  done.get_future().get();
 }
 
 void remove_messages(ClusterStreams& streams, std::uint64_t session) {

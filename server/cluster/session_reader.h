@@ -11,7 +11,7 @@
 
 namespace vat {
 
-/// All that a node needs to continue a session.
+/// The data with which a node continues a session.
 struct SessionImage {
   StoredSession stored;
   std::vector<LogEntry> entries;    ///< the entry that loaded the scene, and those after the state

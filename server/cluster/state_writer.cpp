@@ -1,6 +1,7 @@
 #include "server/cluster/state_writer.h"
 
 #include <algorithm>
+#include <exception>
 #include <utility>
 
 #include "server/support/log.h"
@@ -29,7 +30,25 @@ void StateWriter::write(PackedState state, bool always) {
     }
     is_writing_ = true;
   }
-  begin(std::move(state));
+  if (read_manifest_again()) return begin(std::move(state));
+  end();
+}
+
+bool StateWriter::read_manifest_again() {
+  if (!is_unsure_) return true;
+  try {
+    const auto last = streams_.states.last(manifest_subject(session_));
+    StateManifest manifest = last ? read_manifest(last->data) : StateManifest();
+    if (last && manifest.epoch != epoch_) return false;  // the session has another owner
+    const std::lock_guard lock(mutex_);
+    manifest_ = std::move(manifest);
+    manifest_sequence_ = last ? last->sequence : 0;
+    is_unsure_ = false;
+    return true;
+  } catch (const std::exception& error) {
+    log_warning("session s{}: a state is not stored: {}", session_, error.what());
+    return false;
+  }
 }
 
 void StateWriter::flush(Stored done) {
@@ -93,6 +112,7 @@ void StateWriter::write_manifest_of(const std::shared_ptr<Writing>& writing) {
 void StateWriter::manifest_stored(const StateManifest& manifest, const Stream::Appended& result) {
   if (const auto* error = std::get_if<NatsError>(&result)) {
     log_warning("session s{}: a state is not stored: {}", session_, error->what());
+    is_unsure_ = true;  // the manifest may have been stored
     return end();
   }
   {

@@ -25,7 +25,7 @@ class StateWriter : public std::enable_shared_from_this<StateWriter> {
               StateManifest manifest, std::uint64_t sequence);
 
   /// Stores the state if no other state is being stored. With `always`, waits for the other state
-  /// first, and replaces a waiting state.
+  /// first, and replaces a waiting state. May wait for NATS.
   void write(PackedState state, bool always);
   /// Calls `done` after the states of all previous calls are stored or have failed.
   void flush(Stored done);
@@ -37,6 +37,8 @@ class StateWriter : public std::enable_shared_from_this<StateWriter> {
     std::size_t left = 0;               // chunks that are not stored yet
     bool has_failed = false;
   };
+  /// Reads the newest manifest if this node does not know it. Waits. Returns false on failure.
+  bool read_manifest_again();
   void begin(PackedState state);
   void chunk_stored(const std::shared_ptr<Writing>& writing, std::size_t index,
                     const Stream::Appended& result);
@@ -48,7 +50,8 @@ class StateWriter : public std::enable_shared_from_this<StateWriter> {
   ClusterStreams& streams_;
   const std::uint64_t session_;
   const std::uint64_t epoch_;
-  std::mutex mutex_;  // guards the members below
+  std::atomic<bool> is_unsure_ = false;  // whether manifest_ may not be the newest one
+  std::mutex mutex_;                     // guards the members below
   StateManifest manifest_;
   std::uint64_t manifest_sequence_;
   bool is_writing_ = false;

@@ -87,8 +87,13 @@ std::optional<SessionDirectory::Stored> SessionDirectory::store(const std::strin
     session.number =
         resources_.cluster->add_session(name, session.instruction_set, session.settings, first);
   }
-  const SessionNumber number = resources_.storage->sessions().create(session, first);
-  return Stored{number, params.size()};
+  try {
+    const SessionNumber number = resources_.storage->sessions().create(session, first);
+    return Stored{number, params.size()};
+  } catch (const StorageError&) {
+    if (resources_.cluster) resources_.cluster->remove_session(session.number, [](auto) {});
+    throw;
+  }
 }
 
 void SessionDirectory::remove_stored(SessionNumber number) {

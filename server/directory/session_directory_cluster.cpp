@@ -2,10 +2,12 @@
 
 #include <boost/asio/post.hpp>
 #include <charconv>
+#include <stdexcept>
 #include <utility>
 
 #include "core/support/check.h"
 #include "server/directory/session_directory.h"
+#include "server/session/core/scene_loading.h"
 #include "server/support/log.h"
 
 namespace vat {
@@ -90,8 +92,9 @@ void SessionDirectory::create_for(const std::string& request,
     RpcResult result = internal_error();
     try {
       const Json json = Json::parse(request);
-      auto read = read_named_scene(json.at("scene"), static_cast<Level>(json.at("level")),
-                                   resources_.environment);
+      const auto level = find_level(json.at("level").get<std::string>());
+      if (!level) throw std::invalid_argument("unknown level");
+      auto read = read_named_scene(json.at("scene"), *level, resources_.environment);
       if (auto* error = std::get_if<RpcError>(&read)) {
         result = std::move(*error);
       } else {
@@ -122,7 +125,7 @@ std::optional<RpcResult> SessionDirectory::create_elsewhere(const Json& scene, L
   if (resources_.cluster == nullptr) return {};
   const std::string node = resources_.cluster->best_node();
   if (node == resources_.cluster->name()) return {};
-  const Json request{{"name", name}, {"scene", scene}, {"level", static_cast<int>(level)}};
+  const Json request{{"name", name}, {"scene", scene}, {"level", to_string(level)}};
   try {
     return read_create_answer(resources_.cluster->create_at(node, request.dump()));
   } catch (const std::exception& error) {

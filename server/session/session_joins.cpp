@@ -19,9 +19,13 @@ void Session::execute_join(PendingReply reply, const SessionInbox::Join& join) {
   const auto waiting = std::make_shared<PendingReply>(std::move(reply));
   // First, because the connection may have been another participant's.
   end_departures([this, waiting, number = result.participant.number, resume = result.resume,
-                  resumed = result.resumed] {
-    store_people_then([this, waiting, number, resume, resumed](const Failure& failure) {
-      if (failure) return waiting->answer(*failure);
+                  resumed = result.resumed, undo = join.undo] {
+    store_people_then([this, waiting, number, resume, resumed, undo](const Failure& failure) {
+      if (failure) {
+        undo();  // the participant stays absent until its time to resume ends
+        core_->people().disconnect(waiting->client()->id(), clock_.now());
+        return waiting->answer(*failure);
+      }
       answer_join(*waiting, number, resume, resumed);
     });
   });
