@@ -91,7 +91,8 @@ std::size_t ClusterNode::start(ClusterHost& host) {
   });
   connection_.flush(milliseconds(5000));
   for (const Bucket::Entry& entry : node_bucket_.all()) {
-    if (auto node = read_node(entry.value)) nodes_.note(*std::move(node), entry.revision);
+    if (auto node = read_node(entry.key, entry.value))
+      nodes_.note(*std::move(node), entry.revision);
   }
   locator_.refresh();
   drop_foreign_sessions();
@@ -128,7 +129,8 @@ void ClusterNode::drop_foreign_sessions() {
 void ClusterNode::listen() {
   subscriptions_.push_back(node_bucket_.watch([this](const Bucket::Entry& entry) {
     if (entry.is_removed) return nodes_.forget(entry.key);
-    if (auto node = read_node(entry.value)) nodes_.note(*std::move(node), entry.revision);
+    if (auto node = read_node(entry.key, entry.value))
+      nodes_.note(*std::move(node), entry.revision);
   }));
   subscriptions_.push_back(
       connection_.subscribe("vat.node." + name() + ".create", [this](const NatsMessage& request) {

@@ -146,7 +146,8 @@ bool ClusterNode::is_silent(const std::string& node) {
   if (entry->revision == nodes_.revision_of(node)) {
     return nodes_.silence_of(node) >= Lease::kOthersTime;
   }
-  if (auto info = read_node(entry->value)) nodes_.note(*std::move(info), entry->revision);
+  if (auto info = read_node(entry->key, entry->value))
+    nodes_.note(*std::move(info), entry->revision);
   return false;
 }
 

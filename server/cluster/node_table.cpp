@@ -28,10 +28,11 @@ std::string write_node(const NodeInfo& node) {
       .dump();
 }
 
-std::optional<NodeInfo> read_node(const std::string& text) {
+std::optional<NodeInfo> read_node(const std::string& name, const std::string& text) {
   const Json json = Json::parse(text, nullptr, false);
   if (!json.is_object()) return {};
   try {
+    if (json.at("node") != name) return {};
     return NodeInfo{
         json.at("node"),    json.at("instance"), json.at("url"),    json.at("instruction_set"),
         json.at("version"), json.at("room"),     json.at("accepts")};

@@ -23,8 +23,8 @@ struct NodeInfo {
 };
 
 std::string write_node(const NodeInfo& node);
-/// Returns nothing if the text is invalid.
-std::optional<NodeInfo> read_node(const std::string& text);
+/// Returns nothing if the text is invalid, or describes another node than `name`.
+std::optional<NodeInfo> read_node(const std::string& name, const std::string& text);
 
 /// Nodes of a cluster, with the times at which this process received their renewals. Thread-safe.
 class NodeTable {

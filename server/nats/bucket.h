@@ -26,8 +26,8 @@ class Bucket {
   /// Revision of a key that has no value.
   static constexpr std::uint64_t kNone = 0;
 
-  /// Creates the bucket if it does not exist. `life` is the time after which a value is removed
-  /// that is not renewed; 0: never. The connection must outlive the bucket.
+  /// Creates the bucket if it does not exist. A value is removed `life` after its last
+  /// renewal; 0: never. The connection must outlive the bucket.
   Bucket(NatsConnection& connection, const std::string& name, std::chrono::milliseconds life);
 
   /// Returns the value, if the key has one.

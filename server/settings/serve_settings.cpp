@@ -341,7 +341,7 @@ std::vector<Setting> cluster_group(ClusterSettings& cluster) {
                    "URL at which clients of other nodes reach this node: wss://a.example/ws",
                    check_public_url),
       text_setting("cluster_tls_ca", cluster.tls_ca, "FILE",
-                   "Certificates in PEM that the NATS servers' certificates must lead to"),
+                   "Trusted CA certificates of the NATS servers, in PEM"),
       text_setting("cluster_tls_certificate", cluster.tls_certificate, "FILE",
                    "Certificate of this node for the NATS servers, in PEM"),
       text_setting("cluster_tls_key", cluster.tls_key, "FILE",

@@ -19,13 +19,14 @@ NodeInfo make_node(const std::string& name) {
 }
 
 TEST(NodeTableTest, ANodeIsReadAsItWasWritten) {
-  const auto read = read_node(write_node(make_node("a")));
+  const auto read = read_node("a", write_node(make_node("a")));
   ASSERT_TRUE(read);
   EXPECT_EQ(read->name, "a");
   EXPECT_EQ(read->url, "ws://a/ws");
   EXPECT_EQ(read->room, 2.5);
   EXPECT_TRUE(read->accepts);
-  EXPECT_FALSE(read_node("{}"));
+  EXPECT_FALSE(read_node("a", "{}"));
+  EXPECT_FALSE(read_node("b", write_node(make_node("a"))));
   EXPECT_FALSE(read_node("no JSON"));
 }
 
