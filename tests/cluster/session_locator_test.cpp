@@ -64,6 +64,13 @@ TEST_F(SessionLocatorTest, NumbersAndNamesAreUnique) {
   locator.create(make(locator, ""));
 }
 
+TEST_F(SessionLocatorTest, ANameCanBeTakenAgainAfterAFailedRename) {
+  const LocatedSession old = locator.create(make(locator, "pool"));
+  const LocatedSession renewed = locator.renew(old);
+  EXPECT_TRUE(conflicts([&] { locator.rename(old, "sea"); }));  // has taken the name
+  EXPECT_EQ(locator.rename(renewed, "sea").name, "sea");
+}
+
 TEST_F(SessionLocatorTest, TheNameOfANodeThatEndedDuringACreationIsFree) {
   Bucket bucket(connection, "vat-sessions", std::chrono::milliseconds(0));
   bucket.create("name.706f6f6c", "77");  // "pool", for a session that does not exist

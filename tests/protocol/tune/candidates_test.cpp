@@ -85,6 +85,20 @@ TEST(Candidates, MethodsThatTheSceneDoesNotSupportAreAbsent) {
   EXPECT_EQ(integrators_of(find_candidates(catalogue_scene("rigid-stack"))).size(), 3u);
 }
 
+// The drop is unstable with fixed steps of 4 ms.
+TEST(Candidates, TheLongestStepOfVariableControlIsNoFixedStep) {
+  Scene scene = catalogue_scene("deformable-drop");
+  scene.numerics.control = StepControl::adaptive;
+  scene.numerics.step = 0.01;
+  const CandidateSet set = find_candidates(scene);
+  for (const Candidate& candidate : set.candidates) {
+    if (candidate.numerics.control == StepControl::fixed) {
+      EXPECT_LT(candidate.numerics.step, 4e-3);
+    }
+  }
+  EXPECT_LT(set.coarse.numerics.step, 4e-3 / 8);
+}
+
 TEST(Candidates, AccuracyIsResolved) {
   Scene scene = catalogue_scene("dam-break");
   scene.numerics.accuracy = 0.01;
