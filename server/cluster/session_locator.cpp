@@ -11,7 +11,7 @@ namespace vat {
 namespace {
 
 /// Returns the number of a session in a value of the bucket. Throws NatsError.
-std::uint64_t number_of(const std::string& text) {
+std::uint64_t stored_number_of(const std::string& text) {
   std::uint64_t number = 0;
   const char* const end = text.data() + text.size();
   const auto [stop, code] = std::from_chars(text.data(), end, number);
@@ -143,7 +143,7 @@ std::uint64_t SessionLocator::next_number() {
   for (int i = 0; i < kAttempts; ++i) {
     try {
       const auto last = bucket_.get(kCounterKey);
-      const std::uint64_t next = last ? number_of(last->value) + 1 : 1;
+      const std::uint64_t next = last ? stored_number_of(last->value) + 1 : 1;
       if (last) {
         bucket_.put(kCounterKey, std::to_string(next), last->revision);
       } else {
@@ -167,7 +167,7 @@ void SessionLocator::take_name(const std::string& name, std::uint64_t number) {
     // A node that ended during a creation or removal may have left the name without a session.
     const auto entry = bucket_.get(key_of_name(name));
     if (entry && entry->value == value) return;
-    if (entry && read(number_of(entry->value))) throw;
+    if (entry && read(stored_number_of(entry->value))) throw;
     bucket_.put(key_of_name(name), value, entry ? entry->revision : Bucket::kNone);
   }
 }

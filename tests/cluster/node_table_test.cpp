@@ -27,7 +27,7 @@ TEST(NodeTableTest, ANodeIsReadAsItWasWritten) {
   EXPECT_TRUE(read->accepts);
   EXPECT_FALSE(read_node("a", "{}"));
   EXPECT_FALSE(read_node("b", write_node(make_node("a"))));
-  EXPECT_FALSE(read_node("no JSON"));
+  EXPECT_FALSE(read_node("a", "no JSON"));
 }
 
 TEST(NodeTableTest, ANodeWithoutRenewalIsSilent) {
