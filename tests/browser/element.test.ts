@@ -18,14 +18,17 @@ const kRecording = fileURLToPath(
   new URL('../golden/frame_recordings/twice.vatrec', import.meta.url),
 );
 const kExample = fileURLToPath(new URL('../../protocol/examples/embed.html', import.meta.url));
+const kReadme = fileURLToPath(new URL('../../web/element/README.md', import.meta.url));
 const kFiles: Readonly<Record<string, string>> = {
   '/twice.vatrec': kRecording,
   '/embed.html': kExample,
+  '/readme.html': kReadme,
 };
 const kTypes: Readonly<Record<string, string>> = {
   '.html': 'text/html',
   '.js': 'text/javascript',
   '.css': 'text/css',
+  '.md': 'text/html', // of which only the example is sent
 };
 
 const site = createServer((request, response) => {
@@ -34,7 +37,7 @@ const site = createServer((request, response) => {
   readFile(path).then(
     (content) => {
       response.setHeader('Content-Type', kTypes[extname(path)] ?? 'application/octet-stream');
-      response.end(path === kExample ? String(content).replace(kAddress, liveAddress()) : content);
+      response.end(adapted(path, content));
     },
     () => response.writeHead(404).end(),
   );
@@ -45,6 +48,16 @@ let server: Server;
 /** The address of the server in the example, and that of the test's server. */
 const kAddress = 'ws://127.0.0.1:8080/ws';
 const liveAddress = (): string => `${server.url.replace('http', 'ws')}ws`;
+
+/** The content of a file, with the addresses of this test in examples. */
+function adapted(path: string, content: Buffer): Buffer | string {
+  if (path === kExample) return String(content).replace(kAddress, liveAddress());
+  if (path !== kReadme) return content;
+  const [example = ''] = /(?<=^```html\n).*?(?=^```)/ms.exec(String(content)) ?? [];
+  return `<!doctype html><link rel="icon" href="data:,">${example}`
+    .replace('wss://vat.example/ws?session=s1', liveAddress())
+    .replace('wave.vatrec', '/twice.vatrec');
+}
 
 beforeAll(async () => {
   await build({ configFile: join(kWeb, 'vite.element.config.ts'), logLevel: 'error' });
@@ -98,6 +111,15 @@ it('shows a live session in the example of a page', () =>
   withPage(async (page) => {
     await page.goto(`${origin}/embed.html`);
     await shows(page, 0, 2);
+  }));
+
+it('shows the session and the recording of the example in README.md', () =>
+  withPage(async (page) => {
+    await page.goto(`${origin}/readme.html`);
+    await shows(page, 0, 2);
+    await page.locator('vat-viewer').nth(1).scrollIntoViewIfNeeded();
+    await shows(page, 1, 0);
+    expect(await page.getByLabel('A dam break').count()).toBe(1);
   }));
 
 it('shows two live scenes in an article, and a recording', () =>
