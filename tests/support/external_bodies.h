@@ -185,7 +185,8 @@ class ChainBody final : public ExternalBody {
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver_;
 };
 
-/// Rigid body that a motor rotates about the y axis with a constant rate, whatever acts on it.
+/// Rigid body that a motor rotates about the y axis with a constant rate, independent of all
+/// forces.
 class MotorBody final : public ExternalBody {
  public:
   explicit MotorBody(Real rate) : rate_(rate) {}
