@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "server/cli/common/command.h"
+#include "server/cli/common/commands.h"
 #include "server/cli/common/data_folders.h"
 #include "server/cli/common/scene_argument.h"
 

@@ -8,6 +8,7 @@
 #include "protocol/convert/splishsplash.h"
 #include "protocol/files/output_file.h"
 #include "server/cli/common/command.h"
+#include "server/cli/common/commands.h"
 
 namespace vat {
 namespace {

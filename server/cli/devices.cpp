@@ -4,6 +4,7 @@
 
 #include "core/device/opencl/devices.h"
 #include "server/cli/common/command.h"
+#include "server/cli/common/commands.h"
 
 namespace vat {
 

@@ -8,6 +8,7 @@
 
 #include "protocol/recording/html_page.h"
 #include "server/cli/common/command.h"
+#include "server/cli/common/commands.h"
 #include "server/cli/common/data_folders.h"
 
 namespace vat {

@@ -11,6 +11,7 @@
 #include "core/limits.h"
 #include "protocol/messages/describe.h"
 #include "server/cli/common/command.h"
+#include "server/cli/common/commands.h"
 #include "server/cli/common/data_folders.h"
 #include "server/cli/replay_seeks.h"
 #include "server/operations/log_format.h"

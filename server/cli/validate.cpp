@@ -7,6 +7,7 @@
 #include "core/numerics/cost_estimate.h"
 #include "core/simulation/simulation.h"
 #include "server/cli/common/command.h"
+#include "server/cli/common/commands.h"
 #include "server/cli/common/data_folders.h"
 #include "server/cli/common/scene_argument.h"
 

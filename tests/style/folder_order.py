@@ -36,7 +36,7 @@ FOLDER_ORDER = (
     # the interface of clients
     "server/methods", "server/rpc",
     # the programs
-    "server/script", "server/settings", "server/cli/common", "server/cli/simulate", "server/cli/tune", "server/cli/record",
+    "server/script", "server/settings", "server/cli/common", "server/cli/serve", "server/cli/simulate", "server/cli/tune", "server/cli/record",
     "server/cli",
     "server",
 )

@@ -15,6 +15,7 @@
 #include "core/validation/validate.h"
 #include "protocol/scene/scene_json.h"
 #include "server/cli/common/command.h"
+#include "server/cli/common/commands.h"
 #include "server/cli/common/data_folders.h"
 #include "server/cli/common/device_use.h"
 #include "server/cli/common/option_checks.h"

@@ -15,6 +15,7 @@
 #include "protocol/tune/scene_edit.h"
 #include "protocol/tune/tuning.h"
 #include "server/cli/common/command.h"
+#include "server/cli/common/commands.h"
 #include "server/cli/common/data_folders.h"
 #include "server/cli/common/option_checks.h"
 #include "server/cli/common/scene_argument.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "server/cli/common/command.h"
-#include "server/cli/open_files.h"
+#include "server/cli/serve/open_files.h"
 #include "tests/bench/fanout/case.h"
 #include "tests/bench/fanout/turns.h"
 #include "tests/bench/options.h"

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "server/cli/common/command.h"
-#include "server/cli/open_files.h"
+#include "server/cli/serve/open_files.h"
 #include "tests/bench/faults/fault_soak.h"
 
 namespace vat::bench {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "server/cli/common/command.h"
-#include "server/cli/open_files.h"
+#include "server/cli/serve/open_files.h"
 #include "server/operations/heap.h"
 #include "server/script/server_process.h"
 #include "tests/bench/report/table.h"

@@ -7,7 +7,7 @@
 
 #include "server/access/access.h"
 #include "server/access/token.h"
-#include "server/cli/serve_access.h"
+#include "server/cli/serve/serve_access.h"
 #include "tests/server/fixture/access_fixture.h"
 #include "tests/support/temporary_folder.h"
 

@@ -5,7 +5,7 @@
 #include <cstdlib>
 
 #include "server/access/access.h"
-#include "server/cli/serve_access.h"
+#include "server/cli/serve/serve_access.h"
 #include "tests/support/temporary_folder.h"
 
 namespace vat::test::metrics_access_test {

@@ -10,7 +10,7 @@
 #include <iterator>
 #include <sstream>
 
-#include "server/cli/serve_access.h"
+#include "server/cli/serve/serve_access.h"
 #include "server/http/downloads.h"
 #include "tests/server/fixture/session_fixture.h"
 #include "tests/support/temporary_folder.h"

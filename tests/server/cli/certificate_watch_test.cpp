@@ -1,6 +1,6 @@
 // The certificate is read again after SIGHUP and after a change of its files.
 
-#include "server/cli/certificate_watch.h"
+#include "server/cli/serve/certificate_watch.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "server/cli/certificate_watch.h"
+#include "server/cli/serve/certificate_watch.h"
 
 #include <sys/stat.h>
 

@@ -1,4 +1,4 @@
-#include "server/cli/serve_access.h"
+#include "server/cli/serve/serve_access.h"
 
 #include <boost/asio/ip/address.hpp>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-#include "server/cli/open_files.h"
+#include "server/cli/serve/open_files.h"
 
 #include <sys/resource.h>
 

@@ -1,6 +1,7 @@
-#include "server/cli/program.h"
+#include "server/cli/common/program.h"
 
 #include <CLI/CLI.hpp>
+#include <exception>
 #include <iostream>
 #include <string>
 
@@ -26,9 +27,7 @@ std::string suggest(const CLI::App& app) {
   return nearest.suggestion();
 }
 
-}  // namespace
-
-int run_command(int argc, char** argv) {
+int parse_and_run(int argc, char** argv, std::span<const AddCommand> commands) {
   CLI::App app{"Particle simulation of interacting liquids, deformable and rigid bodies", "vat"};
   app.set_version_flag("--version", version_text());
   // Not require_subcommand(1): that would hide which word is not a sub-command.
@@ -37,18 +36,7 @@ int run_command(int argc, char** argv) {
     if (app.get_subcommands().empty()) throw CLI::RequiredError("A subcommand");
   });
   int exit_code = kExitOk;
-  add_serve_command(app, exit_code);
-  add_simulate_command(app, exit_code);
-  add_tune_command(app, exit_code);
-  add_validate_command(app, exit_code);
-  add_convert_command(app, exit_code);
-  add_devices_command(app, exit_code);
-  add_script_command(app, exit_code);
-  add_replay_command(app, exit_code);
-  add_record_command(app, exit_code);
-  add_export_command(app, exit_code);
-  add_backup_commands(app, exit_code);
-  add_complete_command(app, exit_code);
+  for (const AddCommand add : commands) add(app, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ExtrasError& error) {
@@ -61,6 +49,19 @@ int run_command(int argc, char** argv) {
     return app.exit(error) == 0 ? kExitOk : kExitUsage;
   }
   return exit_code;
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv, std::span<const AddCommand> commands) {
+  try {
+    const int exit_code = parse_and_run(argc, argv, commands);
+    if (std::cout.flush()) return exit_code;
+    std::cerr << "vat: standard output cannot be written\n";  // a full disk, say
+  } catch (const std::exception& error) {
+    std::cerr << "vat: " << error.what() << '\n';
+  }
+  return kExitFailed;
 }
 
 }  // namespace vat

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "server/cli/common/command.h"
+#include "server/cli/common/commands.h"
 #include "server/storage/sqlite/storage_error.h"
 
 namespace vat {

@@ -21,12 +21,13 @@
 #include <vector>
 
 #include "protocol/scene/scene_json.h"
-#include "server/cli/certificate_watch.h"
 #include "server/cli/common/command.h"
+#include "server/cli/common/commands.h"
 #include "server/cli/common/data_folders.h"
 #include "server/cli/common/scene_argument.h"
-#include "server/cli/open_files.h"
-#include "server/cli/serve_access.h"
+#include "server/cli/serve/certificate_watch.h"
+#include "server/cli/serve/open_files.h"
+#include "server/cli/serve/serve_access.h"
 #include "server/http/downloads.h"
 #include "server/http/http_site.h"
 #include "server/http/static_files.h"
