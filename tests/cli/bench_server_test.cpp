@@ -170,7 +170,7 @@ TEST(BenchSoak, DistinguishesLeaksFromSwings) {
 TEST(BenchSoak, ServerSurvivesAllKindsOfClients) {
   const TemporaryFolder folder;
   const ProgramResult result =
-      run_bench({"soak", "--seconds", "15", "--output", folder.path().string()});
+      run_bench({"soak", "--seconds", "10", "--output", folder.path().string()});
   ASSERT_EQ(result.exit_code, 0) << result.out << result.err;
   const Table table = read_csv((folder.path() / "soak.csv").string());
   for (const char* manner : {"joins", "answered", "frames", "rubbish", "flood", "stalls"}) {

@@ -22,7 +22,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::size_t kCuts = 1000;
+constexpr std::size_t kCuts = 500;
 constexpr std::uint32_t kSeed = 20;
 constexpr int kRounds = 24;
 
