@@ -19,8 +19,8 @@ from serving import serving
 from stage import documents
 
 PROGRAM, ROOT = sys.argv[1], Path(sys.argv[2])
-COMMANDS = ("./vat", "cmake", "curl", "docker", "env/bin", "export", "npm", "openssl", "pip",
-            "python3", "sudo", "vat")
+COMMANDS = ("./vat", "cmake", "curl", "docker", "env/bin", "export", "helm",
+            "kubectl", "npm", "openssl", "pip", "python3", "sudo", "vat")
 PATIENCE = 120  # [s]
 
 # First lines of examples that cannot run in this test: the test that runs them, or the reason.
@@ -30,6 +30,9 @@ ELSEWHERE = {
     "docker compose --file docker/compose.yaml up --build": "needs a container engine",
     "docker compose --file docker/compose.cluster.yaml up --build": "needs a container engine",
     "docker build --file docker/Dockerfile --tag vat .": "needs a container engine",
+    "helm repo add nats https://nats-io.github.io/k8s/helm/charts/": "needs Kubernetes",
+    "kubectl create secret generic vat --from-literal VAT_ADMIN_TOKEN=$(openssl rand -hex 16)":
+        "needs Kubernetes",
     "export VAT_PUBLIC_NAME=vat.example.org": "needs a container engine",
     "sudo apt-get install debootstrap curl git": "installs a whole system, with the rights of root",
     "./vat prepare package": "docker/debian/package-check.sh runs it in a bare system",
