@@ -113,6 +113,20 @@ it('shows that the participant was removed or continues in another window, and j
   await says(second, 'connection-text', 'continues in another window');
 });
 
+it('shows the node of a cluster, and that the session moves to another one', async () => {
+  const { page, between } = await through({ node: 'a' });
+  await says(page, 'connection-node', 'on a');
+  const next = new Proxy(server.url, { node: 'b' });
+  try {
+    const texts = await page.page.evaluateHandle(collectTexts);
+    between.moveTo(await next.start());
+    await says(page, 'connection-node', 'on b');
+    expect(await texts.jsonValue()).toContain('The session moves …');
+  } finally {
+    next.stop();
+  }
+});
+
 it('works with an older server, and names the functions that it lacks', async () => {
   const { page } = await through({
     unknown: ['scene.get', 'session.saves', 'session.stats', 'replay.open', 'scene.save'],
@@ -234,3 +248,11 @@ it('joins the session of its address, shows that it was closed, and offers anoth
   expect(new URL(page.page.url()).search).toBe('');
   expect(await page.page.isVisible('#connection-first')).toBe(false);
 });
+
+/** Runs in the browser. Returns a list to which later texts of the connection are added. */
+function collectTexts(): string[] {
+  const line = document.getElementById('connection-text')!;
+  const texts: string[] = [];
+  new MutationObserver(() => texts.push(line.textContent ?? '')).observe(line, { childList: true });
+  return texts;
+}

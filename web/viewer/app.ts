@@ -123,6 +123,7 @@ export class App {
   private readonly controls = new Controls(this.desk, this.view, this.keys, {
     document: this.document,
     nameOfBody: (body) => this.nameOfBody(body),
+    showNode: (node) => this.connection.showNode(node),
     marker: this.marker,
     say: (words) => this.desk.say(words),
     useTool: (tool) => {
@@ -224,6 +225,7 @@ export class App {
       this.whole.showStatus(event.params);
     }
     if (event.event === 'session.closed') this.leave();
+    if (event.event === 'session.moved') this.connection.showMove();
     this.company.handle(event);
     this.controls.handle(event);
   }

@@ -35,6 +35,8 @@ export interface Surroundings extends ToolSurroundings {
   /** Switches to another session; undefined: the server's first. */
   go(session: string | undefined): void;
   readonly stream: Pick<Stream, 'play' | 'loop'>;
+  /** Shows the server's name in its cluster. */
+  showNode(node: string | undefined): void;
 }
 
 /** The controls of the session: playback, scenes, saved items, parameters. */
@@ -119,7 +121,11 @@ export class Controls {
   /** Called after each connection to the server. */
   enter(): void {
     void this.listScenes();
-    void ask(this.desk, 'server.info', {}).then((info) => info && this.kept.showServer(info));
+    void ask(this.desk, 'server.info', {}).then((info) => {
+      if (!info) return;
+      this.kept.showServer(info);
+      this.surroundings.showNode(info.node);
+    });
   }
 
   /** `isNew`: another scene or session; `isEarlier`: a reset or a saved state. */

@@ -11,12 +11,14 @@ export interface Ways {
   worker?: string;
   /** Methods that it does not know, as an older server. */
   unknown?: readonly string[];
+  /** Its name in a cluster. */
+  node?: string;
 }
 
 interface Message {
   id?: number;
   method?: string;
-  result?: { methods?: string[] };
+  result?: { methods?: string[]; node?: string };
 }
 
 /** A proxy between a page and its server. It serves the page, and forwards or holds messages. */
@@ -63,6 +65,15 @@ export class Proxy {
     this.isFrozen = frozen;
   }
 
+  /** Tells the pages that the server at this address of a page continues their session. */
+  moveTo(address: string): void {
+    const url = new URL('/ws', address);
+    url.protocol = 'ws:';
+    const params = { session: 's1', url: String(url) };
+    const event = JSON.stringify({ jsonrpc: '2.0', method: 'session.moved', params });
+    for (const page of this.pages) page.send(event);
+  }
+
   private join(page: WebSocket): void {
     this.pages.add(page);
     const url = new URL('/ws', this.server);
@@ -79,7 +90,7 @@ export class Proxy {
       else waiting.push(text);
     });
     line.on('message', (data, isBinary) => {
-      if (!this.isFrozen) page.send(isBinary ? data : this.lessened(String(data as Buffer)));
+      if (!this.isFrozen) page.send(isBinary ? data : this.changed(String(data as Buffer)));
     });
     page.on('close', () => {
       this.pages.delete(page);
@@ -99,12 +110,12 @@ export class Proxy {
     return JSON.stringify({ jsonrpc: '2.0', id, error });
   }
 
-  /** Removes the unknown methods from `server.info`. */
-  private lessened(text: string): string {
+  /** Removes the unknown methods from `server.info`, and adds the node. */
+  private changed(text: string): string {
     const message = JSON.parse(text) as Message;
-    const { unknown } = this.ways;
-    if (!message.result?.methods || !unknown) return text;
-    const methods = message.result.methods.filter((method) => !unknown.includes(method));
-    return JSON.stringify({ ...message, result: { ...message.result, methods } });
+    const { unknown = [], node } = this.ways;
+    const methods = message.result?.methods?.filter((method) => !unknown.includes(method));
+    if (!methods) return text;
+    return JSON.stringify({ ...message, result: { ...message.result, methods, node } });
   }
 }

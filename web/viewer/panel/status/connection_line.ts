@@ -3,8 +3,10 @@ import { element, onPress } from '../elements';
 import { showObstacle } from '../obstacle';
 import { lossInWords } from './quality';
 
-const kConnected = 'Connected';
 const kRecorded = 'Recording';
+
+/** The time of the notice that the session moves to another server [ms]. */
+const kMoveMs = 1000;
 
 /** No text is shown if the first picture arrives within this time [ms]. */
 const kSoonMs = 1500;
@@ -13,12 +15,15 @@ const kSoonMs = 1500;
 export class ConnectionLine {
   private readonly line = element('connection', HTMLElement);
   private readonly text = element('connection-text', HTMLElement);
+  private readonly node = element('connection-node', HTMLElement);
   private readonly retry = element('connection-retry', HTMLButtonElement);
   private readonly first = element('connection-first', HTMLButtonElement);
   private countdown: number | undefined;
   private hasPicture = false;
-  /** The text while frames arrive. */
-  private connected = kConnected;
+  private isRecorded = false;
+  /** The state of the connection; undefined: the session has replied. */
+  private state: ConnectionState | undefined;
+  private moving: number | undefined;
   private absence: number | undefined;
 
   /** `goToFirst` switches to the first session. `isNamed`: whether the page's address names one. */
@@ -37,7 +42,9 @@ export class ConnectionLine {
     this.line.dataset.state = state.name === 'open' ? 'connecting' : state.name;
     this.retry.hidden = state.name !== 'waiting' && !isEnded(state);
     this.first.hidden = state.name !== 'waiting' || !this.isNamed();
-    this.text.textContent = words(state);
+    this.state = state;
+    this.isRecorded = false;
+    this.write();
     if (state.name === 'waiting') this.countDown(state.retryMs);
     else this.retry.textContent = 'Come back';
     this.explainAbsence(state);
@@ -45,7 +52,23 @@ export class ConnectionLine {
 
   /** Called after the session's reply. */
   join(): void {
-    this.showConnected(kConnected);
+    this.showConnected();
+  }
+
+  /** Shows the server's name in its cluster; undefined: there is no cluster. */
+  showNode(node: string | undefined): void {
+    this.node.hidden = node === undefined;
+    this.node.textContent = node === undefined ? '' : `on ${node}`;
+  }
+
+  /** Called if another server continues the session. Shows this for a short time. */
+  showMove(): void {
+    window.clearTimeout(this.moving);
+    this.moving = window.setTimeout(() => {
+      this.moving = undefined;
+      this.write();
+    }, kMoveMs);
+    this.write();
   }
 
   /** Called when a recording plays in place of a session. */
@@ -53,7 +76,8 @@ export class ConnectionLine {
     window.clearInterval(this.countdown);
     window.clearTimeout(this.absence);
     this.retry.hidden = this.first.hidden = true;
-    this.showConnected(kRecorded);
+    this.isRecorded = true;
+    this.showConnected();
   }
 
   /** Shows whether this viewer receives fewer frames because its connection or graphics are slow. */
@@ -62,15 +86,32 @@ export class ConnectionLine {
     window.clearTimeout(this.absence);
     showObstacle('server', undefined);
     const loss = lossInWords(header);
-    const text = loss === undefined ? this.connected : `Slow: ${loss}`;
     this.line.dataset.slow = String(loss !== undefined);
+    this.write(loss);
+  }
+
+  private showConnected(): void {
+    this.state = undefined;
+    this.line.dataset.state = 'open';
+    this.write();
+  }
+
+  /** Writes the state. `loss`: the frames and particles that this viewer does not receive. */
+  private write(loss?: string): void {
+    const isMoving = this.moving !== undefined;
+    const text =
+      this.state === undefined
+        ? this.connected(isMoving, loss)
+        : isMoving && isBetween(this.state)
+          ? 'The session moves …'
+          : words(this.state);
     if (this.text.textContent !== text) this.text.textContent = text;
   }
 
-  private showConnected(words: string): void {
-    this.connected = words;
-    this.line.dataset.state = 'open';
-    this.text.textContent = words;
+  private connected(isMoving: boolean, loss: string | undefined): string {
+    if (isMoving) return 'The session moved';
+    if (loss !== undefined) return `Slow: ${loss}`;
+    return this.isRecorded ? kRecorded : 'Connected';
   }
 
   /** Shows the reason in the middle of the page if there has been no picture yet. */
@@ -102,6 +143,10 @@ export class ConnectionLine {
 /** Returns whether the server has closed the connection permanently. */
 function isEnded(state: ConnectionState): boolean {
   return state.name === 'closed' && state.reason !== undefined;
+}
+
+function isBetween({ name }: ConnectionState): boolean {
+  return name === 'connecting' || name === 'open';
 }
 
 function words(state: ConnectionState): string {
