@@ -59,6 +59,9 @@ ClusterNode::ClusterNode(ClusterSettings settings, Storage& storage, Clock& cloc
       node_bucket_(connection_, "vat-nodes", Lease::kOthersTime),
       nodes_(clock),
       locator_(connection_),
+      tokens_(settings_.key.empty() ? nullptr
+                                    : std::make_unique<ClusterTokens>(
+                                          connection_, threads_.get_executor(), clock_, instance_)),
       timer_(clock.make_timer(timer_thread_.get_executor())) {
   check_data_folder();
 }

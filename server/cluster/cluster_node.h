@@ -18,6 +18,7 @@
 #include "server/cluster/cluster_host.h"
 #include "server/cluster/cluster_settings.h"
 #include "server/cluster/cluster_streams.h"
+#include "server/cluster/cluster_tokens.h"
 #include "server/cluster/lease.h"
 #include "server/cluster/node_table.h"
 #include "server/cluster/session_locator.h"
@@ -66,6 +67,8 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   std::optional<LocatedSession> find(std::uint64_t session) const { return locator_.find(session); }
   /// Returns the URL of the session's owner, or nothing if it is unknown or silent.
   std::optional<std::string> url_of(const LocatedSession& session) const;
+  /// Returns the tokens that all nodes share, or null if the settings have no key.
+  SharedTokens* tokens() const { return tokens_.get(); }
   /// Returns the URLs of the present nodes.
   std::vector<std::string> urls() const;
   /// Returns the name of the node that should run a new session.
@@ -136,6 +139,7 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   Bucket node_bucket_;
   NodeTable nodes_;
   SessionLocator locator_;
+  const std::unique_ptr<ClusterTokens> tokens_;  // null: there is no key
   ClusterHost* host_ = nullptr;
   std::atomic<bool> leaving_ = false;
   std::atomic<bool> stopped_ = false;

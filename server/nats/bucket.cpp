@@ -62,6 +62,10 @@ void Bucket::remove(const std::string& key, std::uint64_t revision) {
   stream_.append(subject(key), {}, revision, {{kOperation, "DEL"}});
 }
 
+void Bucket::purge(const std::string& pattern) {
+  stream_.purge(subject(pattern));
+}
+
 std::unique_ptr<NatsConnection::Subscription> Bucket::watch(
     std::function<void(const Entry&)> handler) {
   return connection_.subscribe(

@@ -47,6 +47,8 @@ class Bucket {
              std::function<void(Stream::Appended)> done);
   /// Removes the value if the key has the revision.
   void remove(const std::string& key, std::uint64_t revision);
+  /// Removes the values of all keys that match the pattern, and their revisions.
+  void purge(const std::string& pattern);
 
   /// Calls `handler` for each change after the call. Changes during a loss of the connection are
   /// missing; read all() after it.
