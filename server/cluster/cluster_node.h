@@ -91,7 +91,10 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   using Time = SteadyClock::time_point;
 
   void check_data_folder() const;
+  /// Writes the node's entry. Waits until an earlier process with the name has no lease.
   void claim_name();
+  /// Finds out which process the node's entry describes. Waits.
+  void check_name();
   void drop_foreign_sessions();
   NodeInfo describe() const;
   void listen();
@@ -146,7 +149,10 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   std::atomic<bool> draining_ = false;
   std::atomic<bool> checking_ = false;
   std::atomic<bool> needs_refresh_ = false;
-  std::atomic<double> load_ = 0;  // used cores
+  std::atomic<bool> renewing_ = false;
+  std::atomic<bool> has_name_ = true;             // false: another process has the node's name
+  std::atomic<std::uint64_t> name_revision_ = 0;  // of the node's entry
+  std::atomic<double> load_ = 0;                  // used cores
 
   mutable std::mutex mutex_;  // guards the members below
   std::map<std::uint64_t, Hosted> hosted_;

@@ -42,9 +42,6 @@ class Bucket {
   /// As put(), but calls `done` with the new revision.
   void put(const std::string& key, const std::string& value, std::uint64_t revision,
            std::function<void(Stream::Appended)> done);
-  /// Writes the value regardless of the revision, and calls `done` with the new revision.
-  void renew(const std::string& key, const std::string& value,
-             std::function<void(Stream::Appended)> done);
   /// Removes the value if the key has the revision.
   void remove(const std::string& key, std::uint64_t revision);
   /// Removes the values of all keys that match the pattern, and their revisions.
