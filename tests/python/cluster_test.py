@@ -17,6 +17,9 @@ from pathlib import Path
 
 from vat import AsyncClient, Client, Closed, VatError
 
+ADMIN = "the token of an admin"
+SECRETS = {"VAT_ACCESS": "token", "VAT_ADMIN_TOKEN": ADMIN,
+           "VAT_CLUSTER_KEY": "a key of the cluster with sufficient length"}
 PROGRAM = sys.argv[1]
 DOCUMENT = Path(sys.argv[2]).read_text()
 NATS = shutil.which("nats-server") or "/usr/sbin/nats-server"
@@ -76,6 +79,8 @@ class Cluster(unittest.TestCase):
     def owner(self):
         """Returns the name of the node with the first session, and the name of the other."""
         with Client(self.urls["a"]) as client:
+            if self.variables:
+                client.call("access.enter", token=ADMIN)
             [listed] = client.call("session.list")["sessions"]
         [other] = set(self.urls) - {listed["node"]}
         return listed["node"], other
@@ -116,7 +121,8 @@ class Cluster(unittest.TestCase):
 
     async def continue_async(self, process, owner, other):
         """Kills the node while a task waits for frames and another one for an event."""
-        async with AsyncClient([self.urls[owner], self.urls[other]]) as client:
+        async with (asyncio.timeout(60),
+                    AsyncClient([self.urls[owner], self.urls[other]]) as client):
             await client.join("s1", name="Bob")
             await client.call("frames.subscribe")
             await client.next_frame()
@@ -138,6 +144,23 @@ class Cluster(unittest.TestCase):
             client.wait_event("session.moved")
             participants = client.call("presence.list")["participants"]
             self.assertEqual([each["name"] for each in participants], ["Ada"])
+            self.assertEqual(client.url, self.urls[other])
+
+    def test_clients_with_tokens_continue(self):
+        self.variables = SECRETS
+        nodes = self.start()
+        owner, other = self.owner()
+        with Client(self.urls[owner]) as admin:
+            admin.call("access.enter", token=ADMIN)
+            admin.join("s1")
+            invitation = admin.call("session.invite", role="controller", uses=1)["token"]
+        with Client(self.urls[other]) as client:
+            client.call("access.enter", token=invitation)
+            client.join()
+            self.assertEqual(client.url, self.urls[owner])
+            nodes[owner].kill()
+            nodes[owner].wait()
+            client.call("world.set_gravity", gravity=[0, 0, -9])  # needs the role controller
             self.assertEqual(client.url, self.urls[other])
 
     def test_clients_without_a_session_do_not_reconnect(self):
@@ -163,9 +186,7 @@ class Cluster(unittest.TestCase):
         config = f"authorization {{ users: [{', '.join(users)}] }}\n".replace("'", '"')
         (Path(self.folder.name) / "nats.conf").write_text(config)
         self.nats += ["--config", "nats.conf", "--log", "nats.log"]
-        admin = "the token of an admin"
-        self.variables = {"VAT_ACCESS": "token", "VAT_ADMIN_TOKEN": admin,
-                          "VAT_CLUSTER_KEY": "a key of the cluster with sufficient length"}
+        self.variables = SECRETS
         for name, node in zip(self.urls, self.nodes):
             node[:] = [word.replace("nats://", f"nats://{name}:secret@") for word in node]
         log = Path(self.folder.name) / "nats.log"
@@ -178,7 +199,7 @@ class Cluster(unittest.TestCase):
             self.run_command(node, "vat is at")
         for url in self.urls.values():
             with Client(url) as client, Client(url) as guest:
-                client.call("access.enter", token=admin)
+                client.call("access.enter", token=ADMIN)
                 client.join("s1")
                 client.call("world.set_gravity", gravity=[0, 0, -9])
                 invitation = client.call("session.invite", role="viewer", uses=1)["token"]
