@@ -115,7 +115,9 @@ void ClusterNode::claim_name() {
     }
     if (!entry || now - unchanged_since >= Lease::kOthersTime) {
       try {
-        const std::string value = write_node(describe());
+        NodeInfo node = describe();
+        node.accepts = false;  // until the first renewal
+        const std::string value = write_node(node);
         name_revision_ = entry ? node_bucket_.put(name(), value, entry->revision)
                                : node_bucket_.create(name(), value);
         return;
