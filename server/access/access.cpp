@@ -1,5 +1,6 @@
 #include "server/access/access.h"
 
+#include <cmath>
 #include <utility>
 
 #include "server/storage/journal.h"
@@ -46,6 +47,40 @@ void AccessTokens::keep_in(TokenStore& store, Journal& journal) {
   }
 }
 
+void AccessTokens::share(SharedTokens& shared, TokenSigner signer) {
+  shared_ = &shared;
+  signer_.emplace(std::move(signer));
+}
+
+bool AccessTokens::shares(const std::string& session) const {
+  return shared_ != nullptr && !session.starts_with('r');
+}
+
+std::string AccessTokens::make_resume(const std::string& session) const {
+  if (!shares(session)) return make_token();
+  return signer_->sign({TokenClaims::Kind::resume, Role::viewer, session, 0});
+}
+
+bool AccessTokens::is_signed(std::string_view token) const {
+  return signer_ && TokenSigner::has_signature(token);
+}
+
+std::optional<TokenClaims> AccessTokens::verify(std::string_view token) const {
+  if (!is_signed(token)) return {};
+  return signer_->verify(token, clock_.wall_time());
+}
+
+void AccessTokens::use_shared(const TokenHash& token, const TokenClaims& claims,
+                              std::function<void(SharedUse)> done) {
+  shared_->use(token, claims, [claims, done = std::move(done)](const auto& outcome) {
+    if (const auto* failure = std::get_if<StorageError::Kind>(&outcome)) {
+      return done({{}, *failure});
+    }
+    if (!std::get<bool>(outcome)) return done({});
+    done({Grant{claims.role, claims.session, true}, {}});
+  });
+}
+
 template <class Write>
 void AccessTokens::write(Write write) {
   if (store_ == nullptr) return;
@@ -63,18 +98,22 @@ bool AccessTokens::insert(const TokenHash& hash, ValidToken token) {
 
 void AccessTokens::issue(Grant grant, std::optional<std::size_t> uses, std::chrono::seconds time,
                          std::function<void(Issued)> done) {
-  std::string token = make_token();
+  const double ends = clock_.wall_time() + Seconds(time).count();
+  const TokenClaims claims{TokenClaims::Kind::grant, grant.role, grant.session,
+                           static_cast<std::uint64_t>(std::ceil(ends))};
+  const bool is_shared = shares(grant.session);
+  const std::string token = is_shared ? signer_->sign(claims) : make_token();
   const TokenHash hash = hash_of_token(token);
   if (!insert(hash, ValidToken{grant, uses, clock_.now() + time})) return done({});
-  if (store_ == nullptr) return done({std::move(token), {}});
-  const StoredToken stored{hash, to_string(grant.role), grant.session, uses,
-                           clock_.wall_time() + Seconds(time).count()};
-  journal_->post([store = store_, stored] { store->add(stored); },
-                 [this, hash, token = std::move(token), done = std::move(done)](auto failure) {
-                   if (!failure) return done({token, {}});
-                   remove(hash);
-                   done({{}, failure});
-                 });
+  auto finish = [this, hash, token, done = std::move(done)](auto failure) {
+    if (!failure) return done({token, {}});
+    remove(hash);
+    done({{}, failure});
+  };
+  if (is_shared) return shared_->add(hash, claims, uses, std::move(finish));
+  if (store_ == nullptr) return finish(std::optional<StorageError::Kind>());
+  const StoredToken stored{hash, to_string(grant.role), grant.session, uses, ends};
+  journal_->post([store = store_, stored] { store->add(stored); }, std::move(finish));
 }
 
 void AccessTokens::add(const TokenHash& token, Grant grant) {
@@ -96,6 +135,7 @@ void AccessTokens::erase(const TokenHash& token) {
 
 void AccessTokens::remove_session(const std::string& session, bool comes_back) {
   const std::lock_guard lock(mutex_);
+  if (!comes_back && shares(session)) shared_->remove_session(session);
   if (!comes_back) write([session](TokenStore& store) { store.remove_session(session); });
   std::erase_if(entries_, [&](const auto& entry) {
     const bool is_of_it = entry.second.grant.session == session;

@@ -10,6 +10,8 @@
 #include <string_view>
 
 #include "server/access/role.h"
+#include "server/access/shared_tokens.h"
+#include "server/access/signed_token.h"
 #include "server/access/token.h"
 #include "server/storage/sqlite/storage_error.h"
 #include "server/support/clock.h"
@@ -60,6 +62,9 @@ class AccessTokens {
   /// Loads the tokens of the store, and stores all later changes by the journal. Throws
   /// StorageError.
   void keep_in(TokenStore& store, Journal& journal);
+  /// Signs new tokens, and stores the issued ones in `shared` instead of the store. Tokens of
+  /// replays are excepted, because only one node has a replay. Call it before other functions.
+  void share(SharedTokens& shared, TokenSigner signer);
 
   /// A new token, or the reason why there is none.
   struct Issued {
@@ -67,9 +72,11 @@ class AccessTokens {
     std::optional<StorageError::Kind> failure;  ///< the token could not be stored
   };
   /// Calls `done` with a new token, valid for `uses` uses (absent: unlimited) and for `time`. If
-  /// tokens are stored, calls `done` on the journal's thread, otherwise before it returns.
+  /// tokens are stored, calls `done` on another thread, otherwise before it returns.
   void issue(Grant grant, std::optional<std::size_t> uses, std::chrono::seconds time,
              std::function<void(Issued)> done);
+  /// Returns a new token for a participant of the session. The caller must add() its hash.
+  std::string make_resume(const std::string& session) const;
   /// Adds a token without expiry. The caller must remove it.
   void add(const TokenHash& token, Grant grant);
   void remove(const TokenHash& token);
@@ -91,6 +98,19 @@ class AccessTokens {
   void store_use(const TokenHash& token, const Use& use,
                  std::function<void(std::optional<StorageError::Kind>)> done);
 
+  /// Returns whether the token can only be a signed one.
+  bool is_signed(std::string_view token) const;
+  /// Returns the content of a signed token, or nothing if the token is invalid.
+  std::optional<TokenClaims> verify(std::string_view token) const;
+  /// Calls `done` with the grant of a signed invitation or ticket, and counts the use. Calls `done`
+  /// without a grant if the token is invalid. Calls it on another thread.
+  struct SharedUse {
+    std::optional<Grant> grant;
+    std::optional<StorageError::Kind> failure;
+  };
+  void use_shared(const TokenHash& token, const TokenClaims& claims,
+                  std::function<void(SharedUse)> done);
+
  private:
   struct ValidToken {
     Grant grant;
@@ -98,6 +118,7 @@ class AccessTokens {
     std::optional<SteadyClock::time_point> end;  // time of expiry; absent: token of add()
   };
   void remove_old();
+  bool shares(const std::string& session) const;
   /// Adds an issued token. Returns false if there are too many.
   bool insert(const TokenHash& hash, ValidToken token);
   void erase(const TokenHash& token);
@@ -115,6 +136,8 @@ class AccessTokens {
   std::size_t issued_ = 0;
   TokenStore* store_ = nullptr;  // null: tokens are not stored
   Journal* journal_ = nullptr;
+  SharedTokens* shared_ = nullptr;  // null: there are no other nodes
+  std::optional<TokenSigner> signer_;
 };
 
 }  // namespace vat

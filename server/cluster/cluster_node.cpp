@@ -59,6 +59,9 @@ ClusterNode::ClusterNode(ClusterSettings settings, Storage& storage, Clock& cloc
       node_bucket_(connection_, "vat-nodes", Lease::kOthersTime),
       nodes_(clock),
       locator_(connection_),
+      tokens_(settings_.key.empty() ? nullptr
+                                    : std::make_unique<ClusterTokens>(
+                                          connection_, threads_.get_executor(), clock_, instance_)),
       timer_(clock.make_timer(timer_thread_.get_executor())) {
   check_data_folder();
 }
@@ -106,15 +109,45 @@ void ClusterNode::claim_name() {
   auto unchanged_since = clock_.now();
   for (;;) {
     const auto entry = node_bucket_.get(settings_.node);
-    if (!entry) break;
     const auto now = clock_.now();
-    if (entry->revision != std::exchange(revision, entry->revision)) unchanged_since = now;
-    if (now - unchanged_since >= Lease::kOthersTime) break;
+    if (entry && entry->revision != std::exchange(revision, entry->revision)) {
+      unchanged_since = now;
+    }
+    if (!entry || now - unchanged_since >= Lease::kOthersTime) {
+      try {
+        NodeInfo node = describe();
+        node.accepts = false;  // until the first renewal
+        const std::string value = write_node(node);
+        name_revision_ = entry ? node_bucket_.put(name(), value, entry->revision)
+                               : node_bucket_.create(name(), value);
+        return;
+      } catch (const NatsError& error) {  // another process claims the name
+        if (error.kind() != NatsError::Kind::conflict) throw;
+      }
+    }
     if (now > end) {
       throw NatsError(NatsError::Kind::refused,
                       "another running node has the name " + settings_.node);
     }
     std::this_thread::sleep_for(kClaimInterval);
+  }
+}
+
+void ClusterNode::check_name() {
+  try {
+    const auto entry = node_bucket_.get(name());
+    if (!entry) {
+      name_revision_ = node_bucket_.create(name(), write_node(describe()));
+      return;
+    }
+    const auto node = read_node(entry->key, entry->value);
+    if (node && node->instance == instance_) {  // an unconfirmed renewal was stored
+      name_revision_ = entry->revision;
+    } else if (has_name_.exchange(false)) {
+      log_error("another process is the node {}; this one serves no session any more", name());
+    }
+  } catch (const NatsError& error) {
+    log_warning("the entry of the node {}: {}", name(), error.what());
   }
 }
 
@@ -164,7 +197,9 @@ void ClusterNode::stop() {
   threads_.join();
   try {
     const auto entry = host_ == nullptr ? std::nullopt : node_bucket_.get(name());
-    if (entry) node_bucket_.remove(entry->key, entry->revision);
+    const auto node = entry ? read_node(entry->key, entry->value) : std::nullopt;
+    const bool is_own = node && node->instance == instance_;
+    if (is_own) node_bucket_.remove(entry->key, entry->revision);
   } catch (const NatsError& error) {
     log_warning("the node does not leave the cluster's list: {}", error.what());
   }
@@ -227,10 +262,24 @@ void ClusterNode::measure_load(Time now) {
 void ClusterNode::renew(Time now) {
   last_renewal_ = now;
   measure_load(now);
-  node_bucket_.renew(name(), write_node(describe()), [this, now](const Stream::Appended& result) {
-    if (std::holds_alternative<NatsError>(result) || lease_.confirm(now)) return;
+  if (!has_name_ || renewing_.exchange(true)) return;
+  const auto finish = [this, now](const Stream::Appended& result) {
+    if (const auto* error = std::get_if<NatsError>(&result)) {
+      if (error->kind() != NatsError::Kind::conflict) {
+        renewing_ = false;
+        return;
+      }
+      return post([this] {
+        check_name();
+        renewing_ = false;
+      });
+    }
+    name_revision_ = std::get<std::uint64_t>(result);
+    renewing_ = false;
+    if (lease_.confirm(now)) return;
     if (!checking_.exchange(true)) post([this, now] { check_sessions(now); });
-  });
+  };
+  node_bucket_.put(name(), write_node(describe()), name_revision_, finish);
 }
 
 void ClusterNode::look_at(const LocatedSession& entry) {

@@ -18,6 +18,7 @@
 #include "server/cluster/cluster_host.h"
 #include "server/cluster/cluster_settings.h"
 #include "server/cluster/cluster_streams.h"
+#include "server/cluster/cluster_tokens.h"
 #include "server/cluster/lease.h"
 #include "server/cluster/node_table.h"
 #include "server/cluster/session_locator.h"
@@ -66,6 +67,8 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   std::optional<LocatedSession> find(std::uint64_t session) const { return locator_.find(session); }
   /// Returns the URL of the session's owner, or nothing if it is unknown or silent.
   std::optional<std::string> url_of(const LocatedSession& session) const;
+  /// Returns the tokens that all nodes share, or null if the settings have no key.
+  SharedTokens* tokens() const { return tokens_.get(); }
   /// Returns the URLs of the present nodes.
   std::vector<std::string> urls() const;
   /// Returns the name of the node that should run a new session.
@@ -88,7 +91,10 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   using Time = SteadyClock::time_point;
 
   void check_data_folder() const;
+  /// Writes the node's entry. Waits until an earlier process with the name has no lease.
   void claim_name();
+  /// Finds out which process the node's entry describes. Waits.
+  void check_name();
   void drop_foreign_sessions();
   NodeInfo describe() const;
   void listen();
@@ -136,13 +142,17 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   Bucket node_bucket_;
   NodeTable nodes_;
   SessionLocator locator_;
+  const std::unique_ptr<ClusterTokens> tokens_;  // null: there is no key
   ClusterHost* host_ = nullptr;
   std::atomic<bool> leaving_ = false;
   std::atomic<bool> stopped_ = false;
   std::atomic<bool> draining_ = false;
   std::atomic<bool> checking_ = false;
   std::atomic<bool> needs_refresh_ = false;
-  std::atomic<double> load_ = 0;  // used cores
+  std::atomic<bool> renewing_ = false;
+  std::atomic<bool> has_name_ = true;             // false: another process has the node's name
+  std::atomic<std::uint64_t> name_revision_ = 0;  // of the node's entry
+  std::atomic<double> load_ = 0;                  // used cores
 
   mutable std::mutex mutex_;  // guards the members below
   std::map<std::uint64_t, Hosted> hosted_;

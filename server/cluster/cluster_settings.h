@@ -14,6 +14,8 @@ struct ClusterSettings {
   std::string tls_certificate;
   std::string tls_key;
   std::string credentials;
+  std::string key_file;  ///< file with `key`; empty: a variable of the environment has it
+  std::string key;       ///< key for signed tokens; empty: tokens are not signed
 
   bool is_used() const { return !servers.empty(); }
 };

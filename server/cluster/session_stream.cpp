@@ -177,18 +177,21 @@ void SessionStream::retry() {
 }
 
 void SessionStream::resolve() {
-  std::optional<StoredMessage> last;
-  try {
-    last = streams_.logs.last(log_subject(session_));
-  } catch (const NatsError&) {
-    return retry();
-  }
   std::string id;
+  std::uint64_t from = 0;
   {
     const std::lock_guard lock(mutex_);
     id = sending_id_;
+    from = last_message_ + 1;
   }
-  if (last && last->headers[kWriteHeader] == id) return stored(last->sequence);
+  // Messages of the next owner may follow the message.
+  std::optional<StoredMessage> next;
+  try {
+    next = streams_.logs.next(log_subject(session_), from);
+  } catch (const NatsError&) {
+    return retry();
+  }
+  if (next && next->headers[kWriteHeader] == id) return stored(next->sequence);
   log_warning("session s{}: another node is its owner", session_);
   fail(StorageError::Kind::unreachable, true);
 }
@@ -252,7 +255,23 @@ void SessionStream::write_state(const Checkpoint& state, const LogEntry& loaded,
 }
 
 void SessionStream::flush(Done done) {
-  states_->flush([done = std::move(done)] { done({}); });
+  states_->flush(
+      [self = shared_from_this(), done = std::move(done)] { self->flush_records(done); });
+}
+
+void SessionStream::flush_records(const Done& done) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!ended_ && !(sending_.empty() && waiting_.empty())) {
+      Done& last = (waiting_.empty() ? sending_ : waiting_).back().done;
+      last = [before = std::move(last), done](auto failure) {
+        if (before) before(failure);
+        done({});
+      };
+      return;
+    }
+  }
+  done({});
 }
 
 bool SessionStream::needs_state() const {

@@ -77,6 +77,8 @@ class SessionStream final : public SessionReplica,
   /// Finds out whether the message was stored, although its acknowledgement is missing. Waits.
   void resolve();
   void retry();
+  /// Calls `done` after all waiting records are stored or have failed.
+  void flush_records(const Done& done);
   void fail(StorageError::Kind kind, bool is_lost);
 
   ClusterStreams& streams_;

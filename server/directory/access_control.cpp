@@ -1,5 +1,6 @@
 #include "server/directory/access_control.h"
 
+#include <boost/asio/post.hpp>
 #include <memory>
 #include <utility>
 
@@ -23,15 +24,36 @@ void AccessControl::start(Client& client) {
   if (access.mode == AccessMode::open) {
     client.access.role = Role::controller;
   } else {
-    resources_.deferred->add(resources_.clock.now() + access.enter_time,
-                             [this, id = client.outbox->id()] { close_unless_entered(id); });
+    limit_enter_time(client.outbox->id());
   }
 }
 
-std::optional<AccessTokens::Use> AccessControl::use_token(const TokenHash& token) {
+void AccessControl::limit_enter_time(ConnectionId id) {
+  resources_.deferred->add(resources_.clock.now() + resources_.settings.access.enter_time,
+                           [this, id] { close_unless_entered(id); });
+}
+
+std::optional<AccessTokens::Use> AccessControl::use_token(std::string_view token,
+                                                          const TokenHash& hash) {
   const auto& admin = resources_.settings.access.admin;
-  if (admin && are_same(*admin, token)) return AccessTokens::Use{{Role::admin, {}, true}, {}, {}};
-  return resources_.tokens.use(token);
+  if (admin && are_same(*admin, hash)) return AccessTokens::Use{{Role::admin, {}, true}, {}, {}};
+  if (resources_.tokens.is_signed(token)) {
+    // The uses of a signed invitation or ticket are not counted here.
+    const auto claims = resources_.tokens.verify(token);
+    if (!claims || claims->kind != TokenClaims::Kind::resume) return {};
+  }
+  return resources_.tokens.use(hash);
+}
+
+std::optional<TokenClaims> AccessControl::claims_to_check(std::string_view token) const {
+  const auto claims = resources_.tokens.verify(token);
+  if (!claims || claims->session.empty()) return claims;
+  const bool runs_here = tables_.sessions.find(claims->session) != nullptr;
+  if (runs_here && claims->kind == TokenClaims::Kind::resume) return {};  // this node knows it
+  const auto number = number_of(claims->session);
+  const bool is_known = runs_here || tables_.sessions.find_absent(claims->session) != nullptr ||
+                        (number && resources_.cluster->find(*number));
+  return is_known ? claims : std::nullopt;
 }
 
 std::optional<RpcResult> AccessControl::enter(PendingReply& reply, std::string_view token) {
@@ -40,11 +62,16 @@ std::optional<RpcResult> AccessControl::enter(PendingReply& reply, std::string_v
   const std::lock_guard lock(tables_.mutex);
   Client* const client = tables_.clients.find(reply);
   if (client == nullptr) return not_allowed("the connection is closed");
+  if (!client->checks.empty()) return not_allowed("the previous token is still being checked");
   // After too many wrong tokens even a valid one is refused, also while the refusals are delayed.
   const bool may_try = client->wrong_tokens < access.max_wrong_tokens;
-  if (const auto use = may_try ? use_token(hash) : std::nullopt) {
+  if (auto claims = may_try ? claims_to_check(token) : std::nullopt) {
+    return enter_unchecked(reply, *client, hash, *std::move(claims));
+  }
+  if (const auto use = may_try ? use_token(token, hash) : std::nullopt) {
     // At once, because the client may have sent further requests already.
     const Grant before = std::exchange(client->access, use->grant);
+    client->unchecked.reset();
     Json answer{{"role", to_string(use->grant.role)}};
     if (!use->grant.session.empty()) answer["session"] = use->grant.session;
     resources_.tokens.store_use(
@@ -57,15 +84,86 @@ std::optional<RpcResult> AccessControl::enter(PendingReply& reply, std::string_v
         });
     return {};
   }
-  const bool is_last = ++client->wrong_tokens >= access.max_wrong_tokens;
-  log_warning("a wrong token, number {} of its connection", client->wrong_tokens);
+  refuse_token(*client, std::move(reply));
+  return {};
+}
+
+std::optional<RpcResult> AccessControl::enter_unchecked(PendingReply& reply, Client& client,
+                                                        const TokenHash& hash, TokenClaims claims) {
+  Json answer{{"role", to_string(claims.role)}};
+  if (!claims.session.empty()) answer["session"] = claims.session;
+  const Grant before = client.unchecked ? client.unchecked->before : client.access;
+  client.access = {Role::viewer, claims.session, false};
+  client.unchecked = {hash, std::move(claims), before};
+  if (!must_check(client)) return answer;
+  check_then(client, [this, answer = std::move(answer),
+                      waiting = std::make_shared<PendingReply>(std::move(reply))](auto error) {
+    if (!error) return waiting->answer(answer);
+    if (error->kind != ErrorKind::not_authenticated) return waiting->answer(*error);
+    const std::lock_guard lock(tables_.mutex);
+    Client* const refused = tables_.clients.find(*waiting);
+    if (refused != nullptr) refuse_token(*refused, std::move(*waiting));
+  });
+  return {};
+}
+
+bool AccessControl::must_check(const Client& client) const {
+  VAT_CHECK(tables_.mutex.is_held());
+  if (!client.unchecked) return false;
+  const std::string& session = client.unchecked->claims.session;
+  return session.empty() || tables_.sessions.find(session) != nullptr;
+}
+
+void AccessControl::check_then(Client& client, std::function<void(std::optional<RpcError>)> then) {
+  VAT_CHECK(must_check(client));
+  const bool is_running = !client.checks.empty();
+  client.checks.push_back(std::move(then));
+  if (is_running) return;
+  const ConnectionId id = client.outbox->id();
+  const UncheckedToken& token = *client.unchecked;
+  if (token.claims.kind == TokenClaims::Kind::grant) {
+    return resources_.tokens.use_shared(
+        token.hash, token.claims,
+        [this, id](const AccessTokens::SharedUse& use) { finish_check(id, use); });
+  }
+  boost::asio::post(resources_.pool, [this, id, hash = token.hash] {
+    const auto use = resources_.tokens.use(hash);
+    finish_check(id, {use ? std::optional(use->grant) : std::nullopt, {}});
+  });
+}
+
+void AccessControl::finish_check(ConnectionId id, const AccessTokens::SharedUse& use) {
+  std::vector<std::function<void(std::optional<RpcError>)>> waiting;
+  std::optional<RpcError> error;
+  {
+    const std::lock_guard lock(tables_.mutex);
+    Client* const client = tables_.clients.find(id);
+    if (client == nullptr) return;
+    VAT_CHECK(client->unchecked.has_value());
+    waiting.swap(client->checks);
+    if (use.failure) {
+      error = storage_failed(*use.failure);  // a later request checks the token again
+    } else {
+      client->access = use.grant ? *use.grant : client->unchecked->before;
+      client->unchecked.reset();
+      if (!use.grant) error = not_authenticated("the token is invalid or has expired");
+      if (client->access.role == Role::none) limit_enter_time(id);
+    }
+  }
+  for (const auto& then : waiting) then(error);
+}
+
+void AccessControl::refuse_token(Client& client, PendingReply reply) {
+  VAT_CHECK(tables_.mutex.is_held());
+  const AccessSettings& access = resources_.settings.access;
+  const bool is_last = ++client.wrong_tokens >= access.max_wrong_tokens;
+  log_warning("a wrong token, number {} of its connection", client.wrong_tokens);
   resources_.deferred->add(
       resources_.clock.now() + access.refusal_delay,
       [is_last, refused = std::make_shared<PendingReply>(std::move(reply))] {
         refused->answer(not_authenticated("the token is invalid or has expired"));
         if (is_last) refused->client()->close(kNotAuthenticated, "too many wrong tokens");
       });
-  return {};
 }
 
 void AccessControl::close_unless_entered(ConnectionId id) {

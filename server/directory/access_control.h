@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string_view>
 
@@ -17,8 +18,16 @@ class AccessControl {
   /// must hold the directory's lock.
   void start(Client& client);
   /// Grants the access of the token to the client. Answers after the use of the token is stored.
-  /// The reply to an invalid token is delayed.
+  /// The reply to an invalid token is delayed. In a cluster, only the owner of the token's session
+  /// decides about a signed token. Another node answers at once, and grants no more than a
+  /// redirection to the owner.
   std::optional<RpcResult> enter(PendingReply& reply, std::string_view token);
+  /// Returns whether the client's token must be checked before the client joins a session. The
+  /// caller must hold the directory's lock.
+  bool must_check(const Client& client) const;
+  /// Checks the client's token, grants its access, and then calls `then` without the directory's
+  /// lock, which the caller must hold.
+  void check_then(Client& client, std::function<void(std::optional<RpcError>)> then);
   /// Answers with a token that is valid once, for a short time. Only an admin may request a token
   /// without a session, which is valid in all sessions. Errors that are known immediately are
   /// returned instead.
@@ -26,7 +35,15 @@ class AccessControl {
                                        const std::optional<SessionId>& session);
 
  private:
-  std::optional<AccessTokens::Use> use_token(const TokenHash& token);
+  std::optional<AccessTokens::Use> use_token(std::string_view token, const TokenHash& hash);
+  /// Returns the content of a valid signed token that must be checked later.
+  std::optional<TokenClaims> claims_to_check(std::string_view token) const;
+  std::optional<RpcResult> enter_unchecked(PendingReply& reply, Client& client,
+                                           const TokenHash& hash, TokenClaims claims);
+  void finish_check(ConnectionId id, const AccessTokens::SharedUse& use);
+  /// Counts a wrong token, and answers after a delay.
+  void refuse_token(Client& client, PendingReply reply);
+  void limit_enter_time(ConnectionId id);
   /// Restores the previous access of a client that has not joined a session.
   void withdraw(ConnectionId id, const Grant& before);
   void close_unless_entered(ConnectionId id);

@@ -58,6 +58,9 @@ std::optional<RpcError> Admission::refuse_replay() const {
 std::optional<RpcError> Admission::refuse_access(const Client& client,
                                                  SessionNumber session) const {
   const SessionId& own = client.access.session;
+  if (client.unchecked && (own.empty() || tables_.sessions.running().contains(session))) {
+    return not_allowed("the token is checked when the client joins a session");
+  }
   if (own.empty() || own == to_id(session)) return {};
   return not_allowed("the token is for session " + own + " only");
 }

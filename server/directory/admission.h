@@ -46,7 +46,7 @@ class Admission {
   /// the number of abandoned sessions of the address.
   std::variant<SessionCreator, RpcError> admit_creator(const PendingReply& reply);
   std::optional<RpcError> refuse_replay() const;
-  /// Returns an error if the client's token is for another session.
+  /// Returns an error if the client's token is for another session, or has not been checked.
   std::optional<RpcError> refuse_access(const Client& client, SessionNumber session) const;
   /// Returns an error if the client's role in the session is below the method's least role.
   std::optional<RpcError> refuse_role(const PendingReply& reply, SessionNumber session) const;

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "server/clients/pending_reply.h"
 #include "server/directory/server_settings.h"
@@ -10,11 +13,22 @@
 
 namespace vat {
 
+/// Signed token of a connection, whose validity is not known yet: the owner of its session decides.
+/// The connection may only be redirected to the owner.
+struct UncheckedToken {
+  TokenHash hash{};
+  TokenClaims claims;
+  Grant before;  ///< access of the connection before this token
+};
+
 /// Connection, and the session that the connection has joined.
 struct Client {
   std::shared_ptr<ClientOutbox> outbox;
   SessionNumber session = 0;  ///< 0: no session
   Grant access;
+  std::optional<UncheckedToken> unchecked;
+  /// Requests that wait for the check of the token; not empty: the check runs.
+  std::vector<std::function<void(std::optional<RpcError>)>> checks;
   std::size_t wrong_tokens = 0;
 };
 

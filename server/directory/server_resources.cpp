@@ -1,6 +1,7 @@
 #include "server/directory/server_resources.h"
 
 #include <algorithm>
+#include <charconv>
 #include <limits>
 #include <thread>
 #include <utility>
@@ -40,6 +41,15 @@ std::unique_ptr<ClusterNode> make_cluster_node(const ServerSettings& settings, S
 SessionId to_id(SessionNumber number) {
   if (number >= kFirstReplay) return "r" + std::to_string(number - kFirstReplay);
   return "s" + std::to_string(number);
+}
+
+std::optional<SessionNumber> number_of(const SessionId& id) {
+  SessionNumber number = 0;
+  const char* const end = id.data() + id.size();
+  if (!id.starts_with('s')) return {};
+  const auto [rest, error] = std::from_chars(id.data() + 1, end, number);
+  if (error != std::errc() || rest != end) return {};
+  return number;
 }
 
 ServerResources::ServerResources(const Catalogue& catalogue_in, ServerSettings settings_in,
@@ -85,6 +95,9 @@ ServerResources::ServerResources(const Catalogue& catalogue_in, ServerSettings s
       storage_requests(boost::asio::make_strand(storage_threads)) {
   VAT_CHECK(runner.thread_count() > 0);
   if (storage) tokens.keep_in(storage->tokens(), storage->journal());
+  if (cluster && cluster->tokens() != nullptr) {
+    tokens.share(*cluster->tokens(), TokenSigner(settings.cluster.key));
+  }
 }
 
 }  // namespace vat

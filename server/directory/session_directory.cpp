@@ -230,6 +230,15 @@ std::optional<RpcError> SessionDirectory::join(PendingReply& reply,
   if (admission_.is_draining()) return not_allowed("the server is shutting down");
   const bool has_own = !id && !client->access.session.empty();
   const std::optional<SessionId> wanted = has_own ? client->access.session : id;
+  if (access_.must_check(*client)) {
+    access_.check_then(*client, [this, id, request = std::move(request),
+                                 waiting = std::make_shared<PendingReply>(std::move(reply))](
+                                    std::optional<RpcError> error) {
+      if (!error) error = join(*waiting, id, request);
+      if (error) waiting->answer(*std::move(error));
+    });
+    return {};
+  }
   if (auto* absent = tables_.sessions.find_absent(wanted)) {
     if (auto error = admission_.refuse_access(*client, absent->first)) return error;
     if (absent->second.is_lost) return not_recovered(to_id(absent->first), "lost");

@@ -1,7 +1,6 @@
 // Sessions of a cluster, for a server that is one of its nodes.
 
 #include <boost/asio/post.hpp>
-#include <charconv>
 #include <stdexcept>
 #include <utility>
 
@@ -12,16 +11,6 @@
 
 namespace vat {
 namespace {
-
-/// Returns the number in the id of a stored session ("s12").
-std::optional<SessionNumber> number_of(const SessionId& id) {
-  SessionNumber number = 0;
-  const char* const end = id.data() + id.size();
-  if (!id.starts_with('s')) return {};
-  const auto [rest, error] = std::from_chars(id.data() + 1, end, number);
-  if (error != std::errc() || rest != end) return {};
-  return number;
-}
 
 std::string write_answer(const RpcResult& result) {
   if (const auto* error = std::get_if<RpcError>(&result)) {

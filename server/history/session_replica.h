@@ -39,7 +39,7 @@ class SessionReplica {
   /// `always` is true.
   virtual void write_state(const Checkpoint& state, const LogEntry& loaded, std::uint64_t mark,
                            bool always) = 0;
-  /// Calls `done` after the states of all previous calls are stored or have failed.
+  /// Calls `done` after the states and changes of all previous calls are stored or have failed.
   virtual void flush(Done done) = 0;
   /// Returns whether the log since the last state is long, so that a state should be stored.
   virtual bool needs_state() const = 0;

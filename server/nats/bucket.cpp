@@ -53,13 +53,12 @@ void Bucket::put(const std::string& key, const std::string& value, std::uint64_t
   stream_.append(subject(key), value, revision, {}, std::move(done));
 }
 
-void Bucket::renew(const std::string& key, const std::string& value,
-                   std::function<void(Stream::Appended)> done) {
-  stream_.append(subject(key), value, std::move(done));
-}
-
 void Bucket::remove(const std::string& key, std::uint64_t revision) {
   stream_.append(subject(key), {}, revision, {{kOperation, "DEL"}});
+}
+
+void Bucket::purge(const std::string& pattern) {
+  stream_.purge(subject(pattern));
 }
 
 std::unique_ptr<NatsConnection::Subscription> Bucket::watch(

@@ -42,11 +42,10 @@ class Bucket {
   /// As put(), but calls `done` with the new revision.
   void put(const std::string& key, const std::string& value, std::uint64_t revision,
            std::function<void(Stream::Appended)> done);
-  /// Writes the value regardless of the revision, and calls `done` with the new revision.
-  void renew(const std::string& key, const std::string& value,
-             std::function<void(Stream::Appended)> done);
   /// Removes the value if the key has the revision.
   void remove(const std::string& key, std::uint64_t revision);
+  /// Removes the values of all keys that match the pattern, and their revisions.
+  void purge(const std::string& pattern);
 
   /// Calls `handler` for each change after the call. Changes during a loss of the connection are
   /// missing; read all() after it.

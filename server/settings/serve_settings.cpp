@@ -348,6 +348,9 @@ std::vector<Setting> cluster_group(ClusterSettings& cluster) {
                    "Private key of cluster_tls_certificate, in PEM"),
       text_setting("cluster_credentials", cluster.credentials, "FILE",
                    "Credentials of this node's NATS user"),
+      text_setting("cluster_key_file", cluster.key_file, "FILE",
+                   "File whose first line, at least 32 bytes, is the key with which all nodes sign "
+                   "tokens; required with access by token; replaces the variable VAT_CLUSTER_KEY"),
   };
 }
 

@@ -8,7 +8,9 @@
 #include <thread>
 
 #include "server/cluster/cluster_streams.h"
+#include "server/cluster/lease.h"
 #include "server/cluster/log_records.h"
+#include "server/nats/bucket.h"
 #include "tests/cluster/nodes.h"
 #include "tests/recovery/load.h"
 #include "tests/recovery/past.h"
@@ -215,6 +217,34 @@ TEST(Cluster, WithoutNatsCommandsAreRefusedAndThenTheSessionResumes) {
   auto back = nodes.join(kSession, "a", {{"resume", joined.result.at("resume")}});
   EXPECT_TRUE(wait_until(
       [&] { return back.client.call("world.set_gravity", kGravity).contains("result"); }));
+}
+
+TEST(Cluster, AProcessWhoseNameAnotherProcessTakesServesNoSession) {
+  Nodes nodes(1);
+  auto joined = nodes.join(kSession, "a");
+  joined.client.result("world.set_gravity", kGravity);
+  NatsConnection connection({nodes.nats().urls(), "test", {}, {}, {}, {}});
+  Bucket bucket(connection, "vat-nodes", Lease::kOthersTime);
+  ASSERT_TRUE(wait_until([&] {
+    const auto entry = bucket.get("a");
+    Json other = Json::parse(entry->value);
+    other["instance"] = "another process";
+    try {
+      bucket.put("a", other.dump(), entry->revision);
+      return true;
+    } catch (const NatsError&) {  // the node has renewed its entry
+      return false;
+    }
+  }));
+  EXPECT_TRUE(wait_until([&] {
+    try {
+      joined.client.call("world.set_gravity", kGravity);
+      return false;
+    } catch (const Gone&) {
+      return true;
+    }
+  }));
+  EXPECT_TRUE(wait_until([&] { return !bucket.get("a"); }));  // it is not renewed
 }
 
 TEST(Cluster, EachNodeListsCreatesMovesAndClosesSessions) {

@@ -10,6 +10,7 @@
 
 #include <csignal>
 #include <stdexcept>
+#include <utility>
 
 #include "tests/support/wait.h"
 
@@ -52,7 +53,8 @@ std::uint16_t free_port() {
   return ntohs(address.sin_port);
 }
 
-NatsServers::NatsServers(std::size_t count) : servers_(count) {
+NatsServers::NatsServers(std::size_t count, std::string config)
+    : config_(std::move(config)), servers_(count) {
   for (int attempt = 1;; ++attempt) {
     for (Server& server : servers_) {
       server.port = free_port();
@@ -101,7 +103,7 @@ void NatsServers::start(std::size_t index) {
   const std::string name = "nats" + std::to_string(index);
   std::string config = "server_name: " + name +
                        "\nlisten: \"127.0.0.1:" + std::to_string(server.port) +
-                       "\"\njetstream { store_dir: \"" + folder_.file(name) + "\" }\n";
+                       "\"\njetstream { store_dir: \"" + folder_.file(name) + "\" }\n" + config_;
   if (servers_.size() > 1) {
     config +=
         "cluster {\n  name: test\n  listen: \"127.0.0.1:" + std::to_string(server.route_port) +

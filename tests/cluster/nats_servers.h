@@ -16,8 +16,9 @@ std::uint16_t free_port();
 /// form a group. The destructor ends them.
 class NatsServers {
  public:
-  /// Starts the processes and waits until their ports accept. Throws std::runtime_error.
-  explicit NatsServers(std::size_t count);
+  /// Starts the processes and waits until their ports accept. `config` is a further part of their
+  /// configuration. Throws std::runtime_error.
+  explicit NatsServers(std::size_t count, std::string config = {});
   ~NatsServers();
   NatsServers(const NatsServers&) = delete;
   NatsServers& operator=(const NatsServers&) = delete;
@@ -39,6 +40,7 @@ class NatsServers {
   void stop_all();
 
   TemporaryFolder folder_;
+  const std::string config_;
   std::vector<Server> servers_;
 };
 

@@ -5,6 +5,7 @@
 
 #include "server/nats/bucket.h"
 #include "tests/cluster/nats_servers.h"
+#include "tests/support/certificate.h"
 #include "tests/support/wait.h"
 
 namespace vat::test::nats_test {
@@ -43,6 +44,35 @@ TEST_F(Nats, AWriteToABucketRequiresTheRevisionThatItReplaces) {
   bucket.create("s1", "e");
   bucket.create("s2", "f");
   EXPECT_EQ(bucket.all().size(), 2U);
+}
+
+TEST_F(Nats, APurgeRemovesTheKeysOfAPattern) {
+  Bucket bucket(connection, "sessions", milliseconds(0));
+  bucket.create("s1.a", "1");
+  bucket.create("s1.b", "2");
+  bucket.create("s2.a", "3");
+  bucket.purge("s1.>");
+  ASSERT_EQ(bucket.all().size(), 1U);
+  EXPECT_EQ(bucket.all().front().key, "s2.a");
+  bucket.put("s1.a", "4", Bucket::kNone);  // no revision remains
+}
+
+TEST(NatsTls, AUserConnectsToServersWithTrustedCertificatesOnly) {
+  const TemporaryFolder folder;
+  const std::string certificate = folder.file("certificate.pem");
+  write_certificate(certificate, folder.file("key.pem"), "IP:127.0.0.1");
+  NatsServers servers(1, "tls { cert_file: \"" + certificate + "\", key_file: \"" +
+                             folder.file("key.pem") + "\" }\n" +
+                             "authorization { user: a, password: secret }\n");
+  const std::string address = servers.urls().front().substr(std::string("nats://").size());
+  const auto connect = [&](const std::string& user, const std::string& trusted) {
+    NatsConnection connection({{"tls://" + user + address}, "test", trusted, {}, {}, {}});
+    Bucket(connection, "sessions", milliseconds(0)).create("s1", "a");
+  };
+  EXPECT_TRUE(failure([&] { connect("a:secret@", ""); })) << "the system does not trust it";
+  EXPECT_TRUE(failure([&] { connect("a:wrong@", certificate); }));
+  EXPECT_TRUE(failure([&] { connect("", certificate); }));
+  EXPECT_FALSE(failure([&] { connect("a:secret@", certificate); }));
 }
 
 TEST_F(Nats, AWatchReportsChangesAndRemovals) {

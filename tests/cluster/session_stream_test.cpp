@@ -128,6 +128,31 @@ TEST_F(SessionStreamTest, ThePreviousOwnerStoresNothingAfterATakeOver) {
   EXPECT_THAT(sequences_of(take(3)), ElementsAre(1, 2));
 }
 
+TEST_F(SessionStreamTest, AMessageBeforeATakeOverCountsAsStored) {
+  const auto old = create();
+  // As if the acknowledgement of the first message was lost, and the stream sends it again.
+  streams.logs.append(log_subject(kSession), write_records({EntriesRecord{{make_entry(1)}}}), 0,
+                      {{kEpochHeader, "1"}, {kWriteHeader, "1.1"}});
+  EXPECT_THAT(sequences_of(take(2)), ElementsAre(1));
+  EXPECT_EQ(append(*old, {make_entry(1)}), Failure());
+  EXPECT_EQ(append(*old, {make_entry(2)}), StorageError::Kind::unreachable);
+  EXPECT_THAT(sequences_of(take(3)), ElementsAre(1));
+}
+
+TEST_F(SessionStreamTest, AFlushWaitsForTheProgress) {
+  const auto stream = create();
+  ASSERT_EQ(append(*stream, {make_entry(1)}), Failure());
+  SessionProgress progress;
+  progress.participants = "[]";
+  std::atomic<int> written = 0;
+  for (int i = 0; i < 50; ++i) {
+    stream->write_progress(progress, [&](Failure failure) { written += failure ? 0 : 1; });
+  }
+  std::promise<int> flushed;
+  stream->flush([&](Failure) { flushed.set_value(written); });
+  EXPECT_EQ(flushed.get_future().get(), 50);
+}
+
 TEST_F(SessionStreamTest, ATakeOverBeginsAtTheNewestState) {
   const auto stream = create();
   for (std::uint64_t i = 1; i <= 4; ++i) ASSERT_EQ(append(*stream, {make_entry(i)}), Failure());

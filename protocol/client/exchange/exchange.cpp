@@ -121,6 +121,8 @@ void Exchange::rejoin() {
   start_call("session.join", params, [this](const Outcome<Json>& outcome) {
     if (outcome) return finish_rejoin(outcome.value());
     if (outcome.error().kind() == "moved") return redirect(outcome.error().data().value("url", ""));
+    // The participant has left. The next attempt enters with the token of the options.
+    if (outcome.error().kind() == "not_authenticated") return lost(0, outcome.error().what(), now_);
     if (!has_session_ended_ || outcome.error().kind() != "no_such_session") {
       return fail(outcome.error());
     }

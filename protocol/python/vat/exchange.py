@@ -37,6 +37,8 @@ class Exchange:
         self.frames: deque[bytes] = deque()
         self.decoder = FrameDecoder()
         self.waits_for_key = False  # a frame was rejected, and no later frame was decoded
+        #: URL of the node that has the session now, or "" if it is unknown; None: no move
+        self.moved_to: str | None = None
 
     def send(self, method: str, params: dict[str, Any], **more: Any) -> None:
         message: dict[str, Any] = {"jsonrpc": "2.0", **more, "method": method}
@@ -99,7 +101,10 @@ class Exchange:
 
     def _store(self, message: dict[str, Any]) -> None:
         if "method" in message:
-            self.events.append((message["method"], message.get("params", {})))
+            params = message.get("params", {})
+            self.events.append((message["method"], params))
+            if message["method"] == "session.moved":
+                self.moved_to = params["url"]
         elif message["id"] is None:
             raise VatError(message["error"])
         else:

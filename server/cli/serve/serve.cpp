@@ -50,8 +50,8 @@ namespace asio = boost::asio;
 constexpr std::size_t kOtherFiles = 512;
 
 /// Adds the file name and options for ./vat check and the tests.
-constexpr std::string_view kOtherVariables[] = {"VAT_ADMIN_TOKEN", "VAT_CONFIG", "VAT_FUZZ_SECONDS",
-                                                "VAT_KILLS"};
+constexpr std::string_view kOtherVariables[] = {"VAT_ADMIN_TOKEN", "VAT_CLUSTER_KEY", "VAT_CONFIG",
+                                                "VAT_FUZZ_SECONDS", "VAT_KILLS"};
 
 constexpr const char* kServeFooter =
     R"(Every setting can also be an environment variable (VAT_MAX_CONNECTIONS for --max-connections)
@@ -185,6 +185,7 @@ int serve(const ServeSettings& options, const ServeAccess& access, const Catalog
   settings.storage = options.storage;
   if (options.durability == "process") settings.storage.durability = Durability::process;
   settings.cluster = options.cluster;
+  settings.cluster.key = access.cluster_key;
   settings.end = [&](auto drain_time) { return stop_signal.request(drain_time); };
   SystemClock clock;
   SessionServer sessions(catalogue, settings, clock);

@@ -54,7 +54,7 @@ Participant& SessionPeople::add(const ClientOutbox& outbox, const JoinRequest& r
   const Role granted =
       is_creator ? Role::owner : request.role.value_or(context_.settings.default_role);
   const Role role = std::min(granted, request.greatest_role.value_or(granted));
-  token = make_token();
+  token = context_.environment->tokens.make_resume(context_.id);
   Participant& participant = participants_.add(request.name, role);
   if (participant.name.empty()) participant.name = "guest " + std::to_string(participant.number);
   participant.resume = hash_of_token(token);

@@ -128,6 +128,20 @@ TEST_F(ClientExchange, DoesNotReconnectAfterARemoval) {
   }
 }
 
+TEST_F(ClientExchange, TriesAgainIfANodeRefusesAnAcceptedTokenAtTheJoin) {
+  join_and_subscribe();
+  exchange_.lost(0, "end of file", now_);
+  now_ = exchange_.retry_time();
+  open("token");
+  answer("access.enter", {{"role", "viewer"}, {"session", "s1"}});
+  refuse(sent(), "not_authenticated");
+  ASSERT_EQ(exchange_.state(), ConnectionState::waiting);
+  now_ = exchange_.retry_time();
+  open("token");
+  refuse(sent(), "not_authenticated");  // the node knows the session now
+  EXPECT_EQ(exchange_.state(), ConnectionState::closed);
+}
+
 TEST_F(ClientExchange, DoesNotReconnectIfTheOptionsForbidIt) {
   options_.reconnects = false;
   open();
