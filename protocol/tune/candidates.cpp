@@ -96,7 +96,7 @@ class Method {
   Real longest_ = 0;
 };
 
-bool are_equal(const Candidate& a, const Candidate& b) {
+bool are_equal_but_for_steps(const Candidate& a, const Candidate& b) {
   const bool same_tolerance =
       a.numerics.control == StepControl::fixed || a.numerics.tolerance == b.numerics.tolerance;
   const bool same_solve =
@@ -104,8 +104,12 @@ bool are_equal(const Candidate& a, const Candidate& b) {
       (a.incompressible.density_tolerance == b.incompressible.density_tolerance &&
        a.incompressible.divergence_tolerance == b.incompressible.divergence_tolerance);
   return a.pressure_solver == b.pressure_solver && same_solve && same_tolerance &&
-         a.numerics.integrator == b.numerics.integrator &&
-         a.numerics.control == b.numerics.control && a.numerics.step == b.numerics.step;
+         a.numerics.control == b.numerics.control;
+}
+
+bool are_equal(const Candidate& a, const Candidate& b) {
+  return are_equal_but_for_steps(a, b) && a.numerics.integrator == b.numerics.integrator &&
+         a.numerics.step == b.numerics.step;
 }
 
 std::vector<Scene> solver_variants(const Scene& scene, bool has_liquid) {
@@ -170,6 +174,11 @@ Scene with_candidate(Scene scene, const Candidate& candidate) {
   scene.incompressible = candidate.incompressible;
   scene.numerics = candidate.numerics;
   return scene;
+}
+
+bool can_change(const Candidate& a, const Candidate& b, const Scene& scene) {
+  return are_equal_but_for_steps(a, b) &&
+         (scene.emitters.empty() || a.numerics.step == b.numerics.step);
 }
 
 std::string describe(const Candidate& candidate, bool has_liquid) {

@@ -22,6 +22,10 @@ Candidate candidate_of(const Scene& scene);
 /// Returns the scene with these numerics.
 Scene with_candidate(Scene scene, const Candidate& candidate);
 
+/// Returns whether a running session can change from the numerics `a` to `b`: they differ in the
+/// integrator and the step only, and in scenes with emitters in the integrator only.
+bool can_change(const Candidate& a, const Candidate& b, const Scene& scene);
+
 /// Returns a text such as "velocity_verlet, adaptive 0.01, 2.5 ms". `has_liquid` adds the solver.
 std::string describe(const Candidate& candidate, bool has_liquid);
 

@@ -65,4 +65,14 @@ Result<Point> choose_for_real_time(std::span<const Point> points) {
                      short_number(fastest.slowest) + " s per simulated second");
 }
 
+std::vector<Point> cheaper_points(std::span<const Point> points, const Point& choice) {
+  std::vector<Point> cheaper;
+  for (const Point& point : pareto_front(points)) {
+    if (point.seconds < choice.seconds && point.error > choice.error) cheaper.push_back(point);
+  }
+  cheaper.push_back(choice);
+  std::ranges::reverse(cheaper);
+  return cheaper;
+}
+
 }  // namespace vat::tune

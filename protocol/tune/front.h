@@ -34,4 +34,8 @@ Result<Point> choose_for_error(std::span<const Point> points, Real error, Real f
 /// fast enough. Code: not_reached.
 Result<Point> choose_for_real_time(std::span<const Point> points);
 
+/// Returns `choice`, and then the points of the Pareto front that need less time and have a greater
+/// error, by descending time.
+std::vector<Point> cheaper_points(std::span<const Point> points, const Point& choice);
+
 }  // namespace vat::tune

@@ -134,6 +134,18 @@ export interface Settings {
   default_role: 'viewer' | 'controller';
   /** Whether joining needs an invitation */
   locked: boolean;
+  /** Points among which the governor chooses. Absent without the owner's permission for the present scene */
+  governor?: GovernorPoint[];
+}
+/** Numerics with their measured error and cost */
+export interface GovernorPoint {
+  integrator: unknown;
+  /** [s] */
+  step: number;
+  /** Relative error */
+  error: number;
+  /** Computing time per simulated second [s] */
+  seconds: number;
 }
 /** Result of commands without further data */
 export interface InEffect {
@@ -429,6 +441,13 @@ export interface SessionStatus {
   clients: number;
   particles: number;
   position?: Position;
+  /** Only if the governor is permitted and the session uses one of its points */
+  governor?: {
+    /** Index of the present point; 0 is the most accurate */
+    point: number;
+    /** Relative error of the present point */
+    error: number;
+  };
 }
 /** A step with invalid values was undone */
 export interface SessionGuard {
@@ -471,6 +490,16 @@ export interface SessionMoved {
   session: SessionId;
   /** WebSocket URL of the node; empty: not known yet */
   url: string;
+}
+/** The governor has changed integrator and step of the session */
+export interface GovernorSwitched {
+  tick: Tick;
+  /** Index of the new point; 0 is the most accurate */
+  point: number;
+  /** Relative error of the new point */
+  error: number;
+  /** behind: the session was slower than requested. reserve: the more accurate point fits into the free time */
+  reason: 'behind' | 'reserve';
 }
 /** Added, changed and removed participants; sent at most ten times per second */
 export interface PresenceChanged {
@@ -877,6 +906,8 @@ export interface SessionConfigureParams {
   name?: PersonName;
   default_role?: 'viewer' | 'controller';
   locked?: boolean;
+  /** Permits the governor to choose among these points, ordered by increasing error. An empty list ends the permission */
+  governor?: GovernorPoint[];
 }
 
 export interface SessionConfigureResult {
@@ -884,6 +915,8 @@ export interface SessionConfigureResult {
   name: string;
   default_role: 'viewer' | 'controller';
   locked: boolean;
+  /** Absent without a permission for the present scene */
+  governor?: GovernorPoint[];
 }
 /** Creates an invitation to the session */
 export interface SessionInviteParams {
@@ -1233,6 +1266,7 @@ export interface Events {
   'session.closed': SessionClosed;
   'session.moved': SessionMoved;
   'session.configured': Settings;
+  'governor.switched': GovernorSwitched;
   'presence.changed': PresenceChanged;
   'session.storage': SessionStorage;
   'grab.ended': GrabEnded;
@@ -1252,6 +1286,7 @@ export const kEventNames = [
   'session.closed',
   'session.moved',
   'session.configured',
+  'governor.switched',
   'presence.changed',
   'session.storage',
   'grab.ended',

@@ -121,5 +121,26 @@ TEST(Candidates, TextsNameTheNumerics) {
             "incompressible, 0.0005 / 1e-05, velocity_verlet, adaptive 0.01, 2.5 ms");
 }
 
+TEST(CandidateChanges, RunningSessionsChangeIntegratorAndStepOnly) {
+  const Scene scene = catalogue_scene("dam-break");
+  const Candidate own = tune::candidate_of(scene);
+  Candidate other = own;
+  other.numerics.integrator = IntegratorId::runge_kutta_4;
+  other.numerics.step = own.numerics.step / 2;
+  EXPECT_TRUE(can_change(own, other, scene));
+  EXPECT_FALSE(can_change(own, other, catalogue_scene("pour"))) << "the scene has an emitter";
+  other.numerics.step = own.numerics.step;
+  EXPECT_TRUE(can_change(own, other, catalogue_scene("pour")));
+  Candidate controlled = own;
+  controlled.numerics.control =
+      own.numerics.control == StepControl::local ? StepControl::fixed : StepControl::local;
+  EXPECT_FALSE(can_change(own, controlled, scene));
+  Candidate solved = own;
+  solved.pressure_solver = own.pressure_solver == PressureSolver::tait
+                               ? PressureSolver::incompressible
+                               : PressureSolver::tait;
+  EXPECT_FALSE(can_change(own, solved, scene));
+}
+
 }  // namespace
 }  // namespace vat::candidates_test

@@ -63,5 +63,12 @@ TEST(Front, TooSlowScenesNameTheFastestPoint) {
   EXPECT_FALSE(tune::choose_for_real_time({}));
 }
 
+TEST(Front, CheaperPointsBeginWithTheChoice) {
+  EXPECT_THAT(indices(tune::cheaper_points(kPoints, kPoints[3])), ElementsAre(3, 4, 2, 0));
+  // Candidate 7 is not in the front. Candidates 3 and 6 have no greater error.
+  EXPECT_THAT(indices(tune::cheaper_points(kPoints, kPoints[7])), ElementsAre(7, 4, 2, 0));
+  EXPECT_THAT(indices(tune::cheaper_points(kPoints, kPoints[0])), ElementsAre(0));
+}
+
 }  // namespace
 }  // namespace vat::front_test
