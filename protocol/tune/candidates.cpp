@@ -96,7 +96,7 @@ class Method {
   Real longest_ = 0;
 };
 
-bool are_equal_but_for_steps(const Candidate& a, const Candidate& b) {
+bool are_equal(const Candidate& a, const Candidate& b) {
   const bool same_tolerance =
       a.numerics.control == StepControl::fixed || a.numerics.tolerance == b.numerics.tolerance;
   const bool same_solve =
@@ -104,12 +104,8 @@ bool are_equal_but_for_steps(const Candidate& a, const Candidate& b) {
       (a.incompressible.density_tolerance == b.incompressible.density_tolerance &&
        a.incompressible.divergence_tolerance == b.incompressible.divergence_tolerance);
   return a.pressure_solver == b.pressure_solver && same_solve && same_tolerance &&
-         a.numerics.control == b.numerics.control;
-}
-
-bool are_equal(const Candidate& a, const Candidate& b) {
-  return are_equal_but_for_steps(a, b) && a.numerics.integrator == b.numerics.integrator &&
-         a.numerics.step == b.numerics.step;
+         a.numerics.integrator == b.numerics.integrator &&
+         a.numerics.control == b.numerics.control && a.numerics.step == b.numerics.step;
 }
 
 std::vector<Scene> solver_variants(const Scene& scene, bool has_liquid) {
@@ -177,8 +173,20 @@ Scene with_candidate(Scene scene, const Candidate& candidate) {
 }
 
 bool can_change(const Candidate& a, const Candidate& b, const Scene& scene) {
-  return are_equal_but_for_steps(a, b) &&
+  return a.pressure_solver == b.pressure_solver &&
          (scene.emitters.empty() || a.numerics.step == b.numerics.step);
+}
+
+NumericsChange change_to(const Candidate& candidate, bool has_liquid) {
+  const Numerics& numerics = candidate.numerics;
+  NumericsChange change{
+      .integrator = numerics.integrator, .step = numerics.step, .control = numerics.control};
+  if (numerics.control != StepControl::fixed) change.tolerance = numerics.tolerance;
+  if (has_liquid && candidate.pressure_solver == PressureSolver::incompressible) {
+    change.density_tolerance = candidate.incompressible.density_tolerance;
+    change.divergence_tolerance = candidate.incompressible.divergence_tolerance;
+  }
+  return change;
 }
 
 std::string describe(const Candidate& candidate, bool has_liquid) {

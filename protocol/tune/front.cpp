@@ -4,6 +4,8 @@
 #include <sstream>
 #include <tuple>
 
+#include "core/support/check.h"
+
 namespace vat::tune {
 namespace {
 
@@ -65,14 +67,21 @@ Result<Point> choose_for_real_time(std::span<const Point> points) {
                      short_number(fastest.slowest) + " s per simulated second");
 }
 
-std::vector<Point> cheaper_points(std::span<const Point> points, const Point& choice) {
+std::vector<Point> cheaper_points(std::span<const Point> points, const Point& choice,
+                                  std::size_t most) {
+  VAT_CHECK(most >= 2);
   std::vector<Point> cheaper;
   for (const Point& point : pareto_front(points)) {
     if (point.seconds < choice.seconds && point.error > choice.error) cheaper.push_back(point);
   }
   cheaper.push_back(choice);
   std::ranges::reverse(cheaper);
-  return cheaper;
+  if (cheaper.size() <= most) return cheaper;
+  std::vector<Point> spread;
+  for (std::size_t i = 0; i < most; ++i) {
+    spread.push_back(cheaper[i * (cheaper.size() - 1) / (most - 1)]);
+  }
+  return spread;
 }
 
 }  // namespace vat::tune

@@ -41,20 +41,20 @@ std::variant<Participant*, RpcError> find_other(SessionCore& core, const Partici
 Errors find_governor_errors(const SessionCore& core, std::span<const GovernorPoint> points) {
   Errors errors;
   if (points.empty()) return errors;
-  Scene scene = core.run().simulation().scene();
-  const Numerics present = scene.numerics;
+  const Scene& present = core.run().simulation().scene();
   if (!find_point(points, present)) {
-    return {Error{"not_allowed", "/governor",
-                  "must contain the present integrator and step of the session"}};
+    return {Error{"not_allowed", "/governor", "must contain the present numerics of the session"}};
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::string path = pointer_to("/governor", i);
-    scene.numerics.integrator = points[i].integrator;
-    scene.numerics.step = points[i].step;
-    for (const Error& error : find_numerics_errors(scene)) {
+    const Scene changed = with_change(present, points[i].numerics);
+    for (const Error& error : find_numerics_errors(changed)) {
       add_error(errors, error.code, path + error.path, error.message);
     }
-    if (!scene.emitters.empty() && points[i].step != present.step) {
+    if (find_point(points, changed) != i) {
+      add_error(errors, "repeated", path, "must differ from the numerics of previous points");
+    }
+    if (!present.emitters.empty() && changed.numerics.step != present.numerics.step) {
       add_error(errors, "not_allowed", path + "/step",
                 "must be the present step, because the emitters of the scene depend on it");
     }

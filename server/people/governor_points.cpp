@@ -1,10 +1,7 @@
 #include "server/people/governor_points.h"
 
 #include <algorithm>
-#include <cmath>
-
-#include "core/limits.h"
-#include "protocol/scene/scene_parts.h"
+#include <utility>
 
 namespace vat {
 namespace {
@@ -16,8 +13,10 @@ constexpr double kMaxPointSeconds = 1e6;
 GovernorPoint read_point(const Json& value, const std::string& path, Errors& errors) {
   ObjectReader reader(value, path, errors);
   GovernorPoint point;
-  point.integrator = scene_parts::read_enum<IntegratorId>(reader, "integrator");
-  point.step = reader.real("step", kMinStep, kMaxStep);
+  point.numerics = read_numerics_change(reader);
+  if (point.numerics == NumericsChange{}) {
+    add_error(errors, "missing", path, "must have a member of world.set_numerics");
+  }
   point.error = reader.real("error", 0, kMaxPointError);
   point.seconds = reader.real("seconds", kMinPointSeconds, kMaxPointSeconds);
   reader.refuse_unknown();
@@ -58,21 +57,17 @@ std::vector<GovernorPoint> read_governor_points(ObjectReader& reader, std::strin
 Json write_governor_points(std::span<const GovernorPoint> points) {
   Json list = Json::array();
   for (const GovernorPoint& point : points) {
-    list.push_back({{"integrator", to_string(point.integrator)},
-                    {"step", point.step},
-                    {"error", point.error},
-                    {"seconds", point.seconds}});
+    Json written = write_numerics_change(point.numerics);
+    written["error"] = point.error;
+    written["seconds"] = point.seconds;
+    list.push_back(std::move(written));
   }
   return list;
 }
 
-std::optional<std::size_t> find_point(std::span<const GovernorPoint> points,
-                                      const Numerics& numerics) {
-  const auto steps_of = [&](Real step) { return std::llround(numerics.tick / step); };
-  const auto found = std::ranges::find_if(points, [&](const GovernorPoint& point) {
-    return point.integrator == numerics.integrator &&
-           steps_of(point.step) == steps_of(numerics.step);
-  });
+std::optional<std::size_t> find_point(std::span<const GovernorPoint> points, const Scene& scene) {
+  const auto found = std::ranges::find_if(
+      points, [&](const GovernorPoint& point) { return has_numerics(scene, point.numerics); });
   if (found == points.end()) return {};
   return static_cast<std::size_t>(found - points.begin());
 }

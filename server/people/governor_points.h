@@ -6,15 +6,13 @@
 #include <string_view>
 #include <vector>
 
-#include "core/scene/numerics.h"
-#include "protocol/json/json_reader.h"
+#include "protocol/scene/numerics_change.h"
 
 namespace vat {
 
 /// Numerics among which a session's governor chooses, with their measured error and cost.
 struct GovernorPoint {
-  IntegratorId integrator = IntegratorId::velocity_verlet;
-  Real step = 1e-3;    ///< nominal step [s]
+  NumericsChange numerics;
   double error = 0;    ///< relative error, see protocol/tune/TUNE.md
   double seconds = 1;  ///< computing time per simulated second [s]
 
@@ -29,9 +27,7 @@ std::vector<GovernorPoint> read_governor_points(ObjectReader& reader, std::strin
                                                 Errors& errors);
 Json write_governor_points(std::span<const GovernorPoint> points);
 
-/// Returns the index of the point with these numerics: the same integrator, and the same number of
-/// steps per tick.
-std::optional<std::size_t> find_point(std::span<const GovernorPoint> points,
-                                      const Numerics& numerics);
+/// Returns the index of the first point whose numerics the scene has.
+std::optional<std::size_t> find_point(std::span<const GovernorPoint> points, const Scene& scene);
 
 }  // namespace vat

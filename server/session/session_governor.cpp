@@ -13,8 +13,7 @@ namespace {
 using Seconds = std::chrono::duration<double>;
 
 SessionCommand make_switch(const SessionEnvironment& environment, const GovernorPoint& point) {
-  return environment.methods.make(
-      "world.set_numerics", {{"integrator", to_string(point.integrator)}, {"step", point.step}});
+  return environment.methods.make("world.set_numerics", write_numerics_change(point.numerics));
 }
 
 }  // namespace
@@ -32,7 +31,7 @@ std::optional<SessionCommand> SessionGovernor::next_command(const SessionCore& c
     points_.assign(points.begin(), points.end());
     governor_ = {};
   }
-  const auto point = find_point(points, core.run().simulation().scene().numerics);
+  const auto point = find_point(points, core.run().simulation().scene());
   const bool is_measured = point && period > SteadyClock::duration::zero();
   if (is_measured && sampled_ && ticks_ == 0) return {};  // a slow tick is measured as a whole
   const std::uint64_t ticks = std::exchange(ticks_, 0);
@@ -56,7 +55,7 @@ void SessionGovernor::tell_switch(SessionCore& core) {
   const std::optional<Switch> made = std::exchange(switch_, std::nullopt);
   if (!made) return;
   VAT_CHECK(made->point < points_.size());
-  if (find_point(points_, core.run().simulation().scene().numerics) != made->point) {
+  if (find_point(points_, core.run().simulation().scene()) != made->point) {
     log_warning("session {}: the governor could not change to point {}", core.id(), made->point);
     return governor_.fail(made->point);
   }

@@ -139,9 +139,17 @@ export interface Settings {
 }
 /** Numerics with their measured error and cost */
 export interface GovernorPoint {
-  integrator: unknown;
+  integrator?: unknown;
   /** [s] */
-  step: number;
+  step?: number;
+  /** Choice of the step lengths */
+  control?: 'fixed' | 'adaptive' | 'local';
+  /** Relative phase error of adaptive and local steps */
+  tolerance?: number;
+  /** Of incompressible liquids */
+  density_tolerance?: number;
+  /** Of incompressible liquids */
+  divergence_tolerance?: number;
   /** Relative error */
   error: number;
   /** Computing time per simulated second [s] */
@@ -491,7 +499,7 @@ export interface SessionMoved {
   /** WebSocket URL of the node; empty: not known yet */
   url: string;
 }
-/** The governor has changed integrator and step of the session */
+/** The governor has changed the numerics of the session */
 export interface GovernorSwitched {
   tick: Tick;
   /** Index of the new point; 0 is the most accurate */
@@ -1177,11 +1185,19 @@ export interface WorldMoveBodyParams {
 export interface WorldSetMaterialParams {
   material: unknown;
 }
-/** Sets the integrator or the step */
+/** Sets values of the numerics */
 export interface WorldSetNumericsParams {
   integrator?: unknown;
   /** [s]; the tick does not change, and must be a whole number of steps */
   step?: number;
+  /** Choice of the step lengths */
+  control?: 'fixed' | 'adaptive' | 'local';
+  /** Relative phase error of adaptive and local steps */
+  tolerance?: number;
+  /** Of incompressible liquids */
+  density_tolerance?: number;
+  /** Of incompressible liquids */
+  divergence_tolerance?: number;
 }
 /** Moves the vat by hand */
 export interface WorldMoveVatParams {

@@ -106,10 +106,10 @@ std::vector<GovernorPoint> governor_points(const Scene& scene, const tune::Tunin
     if (tune::can_change(chosen, candidates[point.candidate], scene)) suitable.push_back(point);
   }
   std::vector<GovernorPoint> points;
-  for (const tune::Point& point : tune::cheaper_points(suitable, choice)) {
-    if (points.size() == kMaxGovernorPoints) break;
-    const Numerics& numerics = candidates[point.candidate].numerics;
-    points.push_back({numerics.integrator, numerics.step, point.error, point.seconds});
+  for (const tune::Point& point : tune::cheaper_points(suitable, choice, kMaxGovernorPoints)) {
+    const bool has_liquid = tuning.set().has_liquid;
+    points.push_back(
+        {tune::change_to(candidates[point.candidate], has_liquid), point.error, point.seconds});
   }
   return points;
 }
@@ -118,8 +118,7 @@ std::vector<GovernorPoint> governor_points(const Scene& scene, const tune::Tunin
 Status write_front(const TuneOptions& options, std::span<const GovernorPoint> points) {
   if (points.size() < 2) {
     return Error{"not_reached", "",
-                 "no completed candidate is faster than the choice and differs in integrator and "
-                 "step only"};
+                 "no completed candidate of the same solver is faster than the choice"};
   }
   const Json params{{"governor", write_governor_points(points)}};
   constexpr int kIndent = 2;

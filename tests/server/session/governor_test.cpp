@@ -9,9 +9,8 @@ namespace {
 
 using Choice = std::optional<std::size_t>;
 
-const std::vector<GovernorPoint> kPoints{{IntegratorId::velocity_verlet, 1e-3, 1e-4, 0.8},
-                                         {IntegratorId::velocity_verlet, 2e-3, 1e-3, 0.4},
-                                         {IntegratorId::symplectic_euler, 4e-3, 1e-2, 0.2}};
+const std::vector<GovernorPoint> kPoints{
+    {{.step = 1e-3}, 1e-4, 0.8}, {{.step = 2e-3}, 1e-3, 0.4}, {{.step = 4e-3}, 1e-2, 0.2}};
 constexpr double kInterval = 0.5;
 
 /// A session that follows the governor.

@@ -28,11 +28,19 @@ Json point(double step, double error, double seconds) {
 
 /// The numerics of the scene, and cheaper ones.
 Json points() {
-  return Json::array({point(kOwnStep, 0.001, 0.5), point(kLongStep, 0.01, 0.4)});
+  Json own = point(kOwnStep, 0.001, 0.5);
+  own["control"] = "fixed";
+  Json cheaper = point(kLongStep, 0.01, 0.4);
+  cheaper["control"] = "adaptive";
+  cheaper["tolerance"] = 0.05;
+  return Json::array({own, cheaper});
 }
 
+Json numerics_of(TestClient& client) {
+  return client.result("scene.get", {{"current", true}}).at("scene").at("numerics");
+}
 double step_of(TestClient& client) {
-  return client.result("scene.get", {{"current", true}}).at("scene").at("numerics").at("step");
+  return numerics_of(client).at("step");
 }
 
 /// Runs a playing session behind its requested speed for `time`, or until the governor switches.
@@ -86,6 +94,8 @@ TEST_F(SessionGovernorTest, SwitchesToTheCheaperPointAndBack) {
   EXPECT_EQ(cheaper.at("error"), 0.01);
   EXPECT_EQ(cheaper.at("reason"), "behind");
   EXPECT_EQ(step_of(*client), kLongStep);
+  EXPECT_EQ(numerics_of(*client).at("control"), "adaptive");
+  EXPECT_EQ(numerics_of(*client).at("tolerance"), 0.05);
   const auto is_cheaper = [](const Json& status) { return status.at("governor").at("point") == 1; };
   EXPECT_EQ(client->wait_event("session.status", is_cheaper).at("governor").at("error"), 0.01);
   client->mark();
@@ -96,6 +106,7 @@ TEST_F(SessionGovernorTest, SwitchesToTheCheaperPointAndBack) {
   EXPECT_EQ(back.at("reason"), "reserve");
   EXPECT_GE(server.clock().now() - begin, std::chrono::duration<double>(Governor::kReserveSeconds));
   EXPECT_EQ(step_of(*client), kOwnStep);
+  EXPECT_EQ(numerics_of(*client).at("control"), "fixed");
 }
 
 TEST_F(SessionGovernorTest, DoesNothingWithoutPermission) {
@@ -172,8 +183,11 @@ TEST_F(SessionGovernorTest, InvalidPointsAreNamed) {
             Paths{"/governor"})
       << "the session uses neither point";
   Json other = point(kLongStep, 0.01, 0.4);
-  other["control"] = "adaptive";
-  EXPECT_EQ(errors_of(Json::array({own, other})), Paths{"/governor/1/control"});
+  other["tick"] = 0.01;
+  EXPECT_EQ(errors_of(Json::array({own, other})), Paths{"/governor/1/tick"});
+  EXPECT_EQ(errors_of(Json::array({own, point(kOwnStep, 0.01, 0.4)})), Paths{"/governor/1"});
+  EXPECT_EQ(errors_of(Json::array({own, {{"error", 0.01}, {"seconds", 0.4}}})),
+            Paths{"/governor/1"});
   Json many = Json::array();
   for (std::size_t i = 0; i <= kMaxGovernorPoints; ++i) {
     const auto steps = static_cast<double>(10 + kMaxGovernorPoints - i);
