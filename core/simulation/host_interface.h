@@ -10,6 +10,7 @@
 #include "core/scene/scene.h"
 #include "core/simulation/body_values.h"
 #include "core/simulation/connection_values.h"
+#include "core/simulation/numerics_change.h"
 #include "core/support/result.h"
 #include "core/types.h"
 
@@ -83,9 +84,11 @@ class HostInterface {
   Status melt_body(BodyId id, const std::string& material);
   /// Sets gravity [m/s^2]. Fails if a component exceeds kMaxGravity in magnitude.
   Status set_gravity(const Vec3& gravity);
-  /// Sets the integrator and the nominal step [s]; the tick is unchanged. Fails like
-  /// Simulation::create(), with the paths /integrator and /step. Also fails within a tick, and if
-  /// the step of a scene with emitters would change.
+  /// Changes the numerics; the tick and the solver are unchanged. Fails like Simulation::create(),
+  /// with the names of the values as paths. Also fails if the step would change within a tick, or
+  /// in a scene with emitters.
+  Status set_numerics(const NumericsChange& change);
+  /// Sets the integrator and the nominal step [s].
   Status set_numerics(IntegratorId integrator, Real step);
   /// Adds or replaces an interface. Fails like Simulation::create(), with paths under "/interface".
   Status set_interface(const InterfaceDescription& interface);

@@ -26,17 +26,60 @@ AppliedForce in_steps(AppliedForce applied, std::uint64_t step, std::uint64_t ne
   return applied;
 }
 
+/// Names the integrator or the control, whichever changes, in errors of their combination and of
+/// other parts of the scene.
+Errors find_change_errors(const Scene& scene, const NumericsChange& change) {
+  Errors errors = find_numerics_errors(scene);
+  for (Error& error : errors) {
+    if (error.path == "/integrator" && !change.integrator && change.control) {
+      error.path = "/control";
+    } else if (error.path == "/control" && !change.control) {
+      error.path = "/integrator";
+    }
+  }
+  return errors;
+}
+
 }  // namespace
 
+Scene with_change(Scene scene, const NumericsChange& change) {
+  Numerics& numerics = scene.numerics;
+  IncompressibleSolve& solve = scene.incompressible;
+  numerics.integrator = change.integrator.value_or(numerics.integrator);
+  numerics.step = change.step.value_or(numerics.step);
+  numerics.control = change.control.value_or(numerics.control);
+  numerics.tolerance = change.tolerance.value_or(numerics.tolerance);
+  numerics.accuracy.reset();  // the numerics are resolved
+  solve.density_tolerance = change.density_tolerance.value_or(solve.density_tolerance);
+  solve.divergence_tolerance = change.divergence_tolerance.value_or(solve.divergence_tolerance);
+  return scene;
+}
+
+bool has_numerics(const Scene& scene, const NumericsChange& numerics) {
+  const auto is = [](const auto& wanted, const auto& present) {
+    return !wanted || *wanted == present;
+  };
+  const auto steps_of = [&](Real step) { return std::llround(scene.numerics.tick / step); };
+  const bool has_step = !numerics.step || steps_of(*numerics.step) == steps_of(scene.numerics.step);
+  return has_step && is(numerics.integrator, scene.numerics.integrator) &&
+         is(numerics.control, scene.numerics.control) &&
+         is(numerics.tolerance, scene.numerics.tolerance) &&
+         is(numerics.density_tolerance, scene.incompressible.density_tolerance) &&
+         is(numerics.divergence_tolerance, scene.incompressible.divergence_tolerance);
+}
+
 Status HostInterface::set_numerics(IntegratorId integrator, Real step) {
-  Scene scene = impl_->all().scene;
-  const Numerics before = scene.numerics;
+  return set_numerics({.integrator = integrator, .step = step});
+}
+
+Status HostInterface::set_numerics(const NumericsChange& change) {
+  const Scene& present = impl_->all().scene;
+  const Numerics before = present.numerics;
+  Scene scene = with_change(present, change);
+  const Real step = scene.numerics.step;
   const std::uint32_t old_steps = impl_->steps_per_tick();
-  scene.numerics.integrator = integrator;
-  scene.numerics.step = step;
-  scene.numerics.accuracy.reset();  // the numerics are resolved
-  if (Errors errors = find_numerics_errors(scene); !errors.empty()) return errors;
-  if (integrator == before.integrator && step == before.step) return {};
+  if (Errors errors = find_change_errors(scene, change); !errors.empty()) return errors;
+  if (has_numerics(present, change) && step == before.step) return {};
   const bool is_between_ticks = impl_->state.step_count % old_steps == 0;
   if (const auto reason = refuse_other_step(scene, is_between_ticks);
       reason && step != before.step) {

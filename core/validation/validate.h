@@ -72,8 +72,8 @@ Scene with_material(Scene scene, const Material& material);
 /// Returns the errors of a displacement of the vat by a user. Paths are /offset.
 Errors find_moved_vat_errors(const Scene& scene, const Vec3& offset);
 
-/// Returns the errors of the integrator and the step of an otherwise valid scene. Paths are
-/// /integrator and /step. Nothing is sampled.
+/// Returns the errors of the numerics and of the tolerances of incompressible liquids, in an
+/// otherwise valid scene. Paths are the names of the values. Nothing is sampled.
 Errors find_numerics_errors(const Scene& scene);
 
 /// Returns the errors of an interface that is added, or replaces the interface of the same

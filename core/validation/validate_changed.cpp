@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 #include "core/limits.h"
 #include "core/numerics/pair_limits.h"
@@ -38,14 +40,22 @@ Scene without_bounds(const Scene& scene) {
   return open;
 }
 
+/// Paths of the numerics that can change while a simulation runs.
+constexpr std::array<std::string_view, 6> kChangeable{"/numerics/integrator",
+                                                      "/numerics/step",
+                                                      "/numerics/control",
+                                                      "/numerics/tolerance",
+                                                      "/incompressible/density_tolerance",
+                                                      "/incompressible/divergence_tolerance"};
+
 }  // namespace
 
 Errors find_numerics_errors(const Scene& scene) {
   Errors errors = find_errors(without_bodies(scene));
   const std::string own = "/numerics";
   for (Error& error : errors) {
-    if (error.path == own + "/integrator" || error.path == own + "/step") {
-      error.path = error.path.substr(own.size());
+    if (std::ranges::find(kChangeable, error.path) != kChangeable.end()) {
+      error.path = error.path.substr(error.path.rfind('/'));
       continue;
     }
     error.message = error.path + " would be invalid: " + error.message;

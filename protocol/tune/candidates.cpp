@@ -172,6 +172,23 @@ Scene with_candidate(Scene scene, const Candidate& candidate) {
   return scene;
 }
 
+bool can_change(const Candidate& a, const Candidate& b, const Scene& scene) {
+  return a.pressure_solver == b.pressure_solver &&
+         (scene.emitters.empty() || a.numerics.step == b.numerics.step);
+}
+
+NumericsChange change_to(const Candidate& candidate, bool has_liquid) {
+  const Numerics& numerics = candidate.numerics;
+  NumericsChange change{
+      .integrator = numerics.integrator, .step = numerics.step, .control = numerics.control};
+  if (numerics.control != StepControl::fixed) change.tolerance = numerics.tolerance;
+  if (has_liquid && candidate.pressure_solver == PressureSolver::incompressible) {
+    change.density_tolerance = candidate.incompressible.density_tolerance;
+    change.divergence_tolerance = candidate.incompressible.divergence_tolerance;
+  }
+  return change;
+}
+
 std::string describe(const Candidate& candidate, bool has_liquid) {
   constexpr Real kMilliseconds = 1e3;
   constexpr int kDigits = 4;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/scene/scene.h"
+#include "core/simulation/numerics_change.h"
 #include "core/support/result.h"
 
 /// Measured choice of the numerics of a scene; TUNE.md describes the rules.
@@ -21,6 +22,12 @@ Candidate candidate_of(const Scene& scene);
 
 /// Returns the scene with these numerics.
 Scene with_candidate(Scene scene, const Candidate& candidate);
+
+/// Returns whether a running session can change from the numerics `a` to `b`: they have the same
+/// solver, and in scenes with emitters the same step.
+bool can_change(const Candidate& a, const Candidate& b, const Scene& scene);
+/// Returns the values of a candidate that matter for its runs, except for the solver.
+NumericsChange change_to(const Candidate& candidate, bool has_liquid);
 
 /// Returns a text such as "velocity_verlet, adaptive 0.01, 2.5 ms". `has_liquid` adds the solver.
 std::string describe(const Candidate& candidate, bool has_liquid);

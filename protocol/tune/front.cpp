@@ -4,6 +4,8 @@
 #include <sstream>
 #include <tuple>
 
+#include "core/support/check.h"
+
 namespace vat::tune {
 namespace {
 
@@ -63,6 +65,23 @@ Result<Point> choose_for_real_time(std::span<const Point> points) {
   return not_reached("no candidate leaves " + short_number(100 * kReserve) +
                      " % of real time free; the fastest one needs " +
                      short_number(fastest.slowest) + " s per simulated second");
+}
+
+std::vector<Point> cheaper_points(std::span<const Point> points, const Point& choice,
+                                  std::size_t most) {
+  VAT_CHECK(most >= 2);
+  std::vector<Point> cheaper;
+  for (const Point& point : pareto_front(points)) {
+    if (point.seconds < choice.seconds && point.error > choice.error) cheaper.push_back(point);
+  }
+  cheaper.push_back(choice);
+  std::ranges::reverse(cheaper);
+  if (cheaper.size() <= most) return cheaper;
+  std::vector<Point> spread;
+  for (std::size_t i = 0; i < most; ++i) {
+    spread.push_back(cheaper[i * (cheaper.size() - 1) / (most - 1)]);
+  }
+  return spread;
 }
 
 }  // namespace vat::tune

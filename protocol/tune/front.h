@@ -34,4 +34,10 @@ Result<Point> choose_for_error(std::span<const Point> points, Real error, Real f
 /// fast enough. Code: not_reached.
 Result<Point> choose_for_real_time(std::span<const Point> points);
 
+/// Returns `choice`, and then the points of the Pareto front that need less time and have a greater
+/// error, by descending time. If there are more than `most` points, returns `most` of them, evenly
+/// distributed from the first to the last one. `most` must be at least 2.
+std::vector<Point> cheaper_points(std::span<const Point> points, const Point& choice,
+                                  std::size_t most);
+
 }  // namespace vat::tune

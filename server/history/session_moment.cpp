@@ -138,7 +138,13 @@ SessionMoment read_moment(const std::string& fields, Snapshot snapshot) {
 }
 
 Json write_settings(const SessionSettings& settings) {
-  return {{"default_role", to_string(settings.default_role)}, {"locked", settings.is_locked}};
+  Json written{{"default_role", to_string(settings.default_role)}, {"locked", settings.is_locked}};
+  const GovernorPermission& governor = settings.governor;
+  if (!governor.points.empty()) {
+    written["governor"] = {{"scene", governor.scene},
+                           {"points", write_governor_points(governor.points)}};
+  }
+  return written;
 }
 
 SessionSettings read_settings(std::string name, const std::string& settings) {
@@ -149,6 +155,11 @@ SessionSettings read_settings(std::string name, const std::string& settings) {
   read.name = std::move(name);
   read.default_role = read_role(reader, "default_role");
   read.is_locked = reader.boolean("locked");
+  if (const Json* governor = reader.member("governor")) {
+    ObjectReader permission(*governor, reader.path_of("governor"), errors);
+    read.governor.scene = permission.count("scene", 1, kAnyCount);
+    read.governor.points = read_governor_points(permission, "points", errors);
+  }
   if (!errors.empty()) fail(errors);
   return read;
 }

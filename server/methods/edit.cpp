@@ -2,8 +2,8 @@
 
 #include <array>
 
+#include "protocol/scene/numerics_change.h"
 #include "protocol/scene/scene_json.h"
-#include "protocol/scene/scene_parts.h"
 #include "server/methods/handlers.h"
 #include "server/methods/parts.h"
 
@@ -56,21 +56,16 @@ SessionAction read_world_set_material(ObjectReader& params, Errors&) {
 }
 
 SessionAction read_world_set_numerics(ObjectReader& params, Errors& errors) {
-  std::optional<IntegratorId> integrator;
-  if (params.has("integrator"))
-    integrator = scene_parts::read_enum<IntegratorId>(params, "integrator");
-  std::optional<Real> step;
-  if (params.has("step")) step = params.real("step", kAnyMin, kAnyMax);
-  if (!integrator && !step) {
+  const NumericsChange change = read_numerics_change(params);
+  if (change == NumericsChange{} && errors.empty()) {
     add_error(errors, "missing", params.path_of("integrator"),
-              "must be given, unless step is given");
+              "must be given, unless another member is given");
   }
-  return [integrator, step](SessionCore& core, Participant&) -> ActionResult {
-    Simulation& simulation = core.run().simulation();
-    const Numerics& now = simulation.scene().numerics;
-    const Status set =
-        simulation.set_numerics(integrator.value_or(now.integrator), step.value_or(now.step));
-    if (!set) return refused(set.errors());
+  return [change](SessionCore& core, Participant&) -> ActionResult {
+    // Shorter steps need more of the limit particle_steps_per_tick.
+    auto error = change_within_limits(
+        core, [&](Simulation& simulation) { return simulation.set_numerics(change); });
+    if (error) return *std::move(error);
     return Json::object();
   };
 }

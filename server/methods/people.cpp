@@ -1,7 +1,9 @@
 // session.configure, session.invite, participant.*, control.request, control.hand_over
 
+#include <algorithm>
 #include <chrono>
 
+#include "core/validation/validate.h"
 #include "server/methods/handlers.h"
 #include "server/people/person_name.h"
 
@@ -35,6 +37,31 @@ std::variant<Participant*, RpcError> find_other(SessionCore& core, const Partici
   return other;
 }
 
+/// Returns the errors of points among which the session's governor would choose.
+Errors find_governor_errors(const SessionCore& core, std::span<const GovernorPoint> points) {
+  Errors errors;
+  if (points.empty()) return errors;
+  const Scene& present = core.run().simulation().scene();
+  if (!find_point(points, present)) {
+    return {Error{"not_allowed", "/governor", "must contain the present numerics of the session"}};
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::string path = pointer_to("/governor", i);
+    const Scene changed = with_change(present, points[i].numerics);
+    for (const Error& error : find_numerics_errors(changed)) {
+      add_error(errors, error.code, path + error.path, error.message);
+    }
+    if (find_point(points, changed) != i) {
+      add_error(errors, "repeated", path, "must differ from the numerics of previous points");
+    }
+    if (!present.emitters.empty() && changed.numerics.step != present.numerics.step) {
+      add_error(errors, "not_allowed", path + "/step",
+                "must be the present step, because the emitters of the scene depend on it");
+    }
+  }
+  return errors;
+}
+
 }  // namespace
 
 SessionAction read_session_configure(ObjectReader& params, Errors& errors) {
@@ -45,8 +72,15 @@ SessionAction read_session_configure(ObjectReader& params, Errors& errors) {
   if (params.has("default_role"))
     role = kGrantableRoles[params.choice("default_role", {"viewer", "controller"})];
   if (params.has("locked")) is_locked = params.boolean("locked");
+  std::optional<std::vector<GovernorPoint>> points;
+  if (params.has("governor")) points = read_governor_points(params, "governor", errors);
   return [=](SessionCore& core, Participant&) -> ActionResult {
     SessionSettings settings = core.people().settings();
+    if (points) {
+      if (core.playback() != nullptr) return not_allowed("a replay has no governor");
+      if (Errors wrong = find_governor_errors(core, *points); !wrong.empty()) return refused(wrong);
+      settings.governor = {core.history().scene_sequence(), *points};
+    }
     if (name) settings.name = *name;
     if (role) settings.default_role = *role;
     if (is_locked) settings.is_locked = *is_locked;

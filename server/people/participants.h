@@ -18,6 +18,8 @@ namespace vat {
 
 /// Number of a participant in its session, from 1. A number is not used twice.
 using ParticipantNumber = std::uint64_t;
+/// Sender of the server's own commands. It is not a participant.
+inline constexpr ParticipantNumber kServerItself = 0;
 
 /// Position at which a participant points. With `direction`, a ray from this position.
 struct Pointer {

@@ -15,6 +15,7 @@
 #include "server/session/core/playback.h"
 #include "server/session/core/session_core.h"
 #include "server/session/pointer_commands.h"
+#include "server/session/session_governor.h"
 #include "server/session/session_inbox.h"
 #include "server/session/session_reads.h"
 #include "server/session/ticks/slow_tick_gate.h"
@@ -239,6 +240,7 @@ class Session : public std::enable_shared_from_this<Session> {
   PointerCommands pointers_;
   const std::unique_ptr<Timer> pointer_timer_;
   bool pointers_skip_tick_ = false;  // the pointer commands came too late for the next tick
+  SessionGovernor governor_;
   SessionReads reads_;
   Steps steps_;
   Steps ending_steps_;  // jobs whose reached tick is being stored

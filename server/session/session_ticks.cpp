@@ -100,6 +100,7 @@ void Session::run_tick(SteadyClock::time_point now, bool timed) {
   update_summary();  // before the frame: its acknowledgement is answered with this tick or later
   core_->notifier().publish_tick();
   const auto published = CostClock::now();
+  if (timed && !playback_) governor_.add_tick(clock_.now() - now);
   if (timed && published - begin > period_) {
     const auto stages = run.profile().spans();
     core_->environment().metrics.slow_ticks().add({id(),
@@ -195,8 +196,14 @@ void Session::upkeep_turn() {
     const SessionMethods& methods = core_->environment().methods;
     commands.push_back({participant, methods.make("grab.end", {{"grab", grab}}), {}});
   }
+  if (!playback_) {
+    if (auto command = governor_.next_command(*core_, clock_.now(), period_)) {
+      commands.push_back({kServerItself, *std::move(command), {}});
+    }
+  }
   run_commands(std::move(commands), [this, idle] {
     for (const SessionCore::IdleGrab& one : idle) core_->tell_idle_grab(one);
+    governor_.tell_switch(*core_);
   });
   core_->notifier().announce_status();
   core_->participants().close_silent(clock_.now(), core_->environment().limits.frame_patience);

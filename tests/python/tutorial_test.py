@@ -65,7 +65,9 @@ class Learner:
     def run(self, commands: str) -> str:
         python = Path(sys.executable)
         text = commands.replace("python3 ", f"{python} -B ")
-        done = subprocess.run(["bash", "-ec", text], cwd=self.folder, env=os.environ, text=True,
+        # Unbuffered, two programs could write parts of their lines in turn.
+        environment = {**os.environ, "PYTHONUNBUFFERED": ""}
+        done = subprocess.run(["bash", "-ec", text], cwd=self.folder, env=environment, text=True,
                               stdout=subprocess.PIPE, timeout=PATIENCE, check=True)
         return done.stdout
 

@@ -134,6 +134,26 @@ export interface Settings {
   default_role: 'viewer' | 'controller';
   /** Whether joining needs an invitation */
   locked: boolean;
+  /** Points among which the governor chooses. Absent without the owner's permission for the present scene */
+  governor?: GovernorPoint[];
+}
+/** Numerics with their measured error and cost */
+export interface GovernorPoint {
+  integrator?: unknown;
+  /** [s] */
+  step?: number;
+  /** Choice of the step lengths */
+  control?: 'fixed' | 'adaptive' | 'local';
+  /** Relative phase error of adaptive and local steps */
+  tolerance?: number;
+  /** Of incompressible liquids */
+  density_tolerance?: number;
+  /** Of incompressible liquids */
+  divergence_tolerance?: number;
+  /** Relative error */
+  error: number;
+  /** Computing time per simulated second [s] */
+  seconds: number;
 }
 /** Result of commands without further data */
 export interface InEffect {
@@ -429,6 +449,13 @@ export interface SessionStatus {
   clients: number;
   particles: number;
   position?: Position;
+  /** Only if the governor is permitted and the session uses one of its points */
+  governor?: {
+    /** Index of the present point; 0 is the most accurate */
+    point: number;
+    /** Relative error of the present point */
+    error: number;
+  };
 }
 /** A step with invalid values was undone */
 export interface SessionGuard {
@@ -471,6 +498,16 @@ export interface SessionMoved {
   session: SessionId;
   /** WebSocket URL of the node; empty: not known yet */
   url: string;
+}
+/** The governor has changed the numerics of the session */
+export interface GovernorSwitched {
+  tick: Tick;
+  /** Index of the new point; 0 is the most accurate */
+  point: number;
+  /** Relative error of the new point */
+  error: number;
+  /** behind: the session was slower than requested. reserve: the more accurate point fits into the free time */
+  reason: 'behind' | 'reserve';
 }
 /** Added, changed and removed participants; sent at most ten times per second */
 export interface PresenceChanged {
@@ -877,6 +914,8 @@ export interface SessionConfigureParams {
   name?: PersonName;
   default_role?: 'viewer' | 'controller';
   locked?: boolean;
+  /** Permits the governor to choose among these points, ordered by increasing error. An empty list ends the permission */
+  governor?: GovernorPoint[];
 }
 
 export interface SessionConfigureResult {
@@ -884,6 +923,8 @@ export interface SessionConfigureResult {
   name: string;
   default_role: 'viewer' | 'controller';
   locked: boolean;
+  /** Absent without a permission for the present scene */
+  governor?: GovernorPoint[];
 }
 /** Creates an invitation to the session */
 export interface SessionInviteParams {
@@ -1144,11 +1185,19 @@ export interface WorldMoveBodyParams {
 export interface WorldSetMaterialParams {
   material: unknown;
 }
-/** Sets the integrator or the step */
+/** Sets values of the numerics */
 export interface WorldSetNumericsParams {
   integrator?: unknown;
   /** [s]; the tick does not change, and must be a whole number of steps */
   step?: number;
+  /** Choice of the step lengths */
+  control?: 'fixed' | 'adaptive' | 'local';
+  /** Relative phase error of adaptive and local steps */
+  tolerance?: number;
+  /** Of incompressible liquids */
+  density_tolerance?: number;
+  /** Of incompressible liquids */
+  divergence_tolerance?: number;
 }
 /** Moves the vat by hand */
 export interface WorldMoveVatParams {
@@ -1233,6 +1282,7 @@ export interface Events {
   'session.closed': SessionClosed;
   'session.moved': SessionMoved;
   'session.configured': Settings;
+  'governor.switched': GovernorSwitched;
   'presence.changed': PresenceChanged;
   'session.storage': SessionStorage;
   'grab.ended': GrabEnded;
@@ -1252,6 +1302,7 @@ export const kEventNames = [
   'session.closed',
   'session.moved',
   'session.configured',
+  'governor.switched',
   'presence.changed',
   'session.storage',
   'grab.ended',

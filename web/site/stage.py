@@ -17,7 +17,8 @@ from xml.etree import ElementTree
 #: Headers of the C++ reference: the classes of a program that runs simulations.
 HEADERS = (
     "core/simulation/simulation.h", "core/simulation/host_interface.h",
-    "core/simulation/body_values.h", "core/simulation/snapshot.h", "core/diagnostics.h",
+    "core/simulation/body_values.h", "core/simulation/numerics_change.h",
+    "core/simulation/snapshot.h", "core/diagnostics.h",
     "core/coupling/coupled_simulation.h", "core/coupling/external_body.h",
     "core/stage/advance_report.h", "core/scene/scene.h", "core/scene/body.h",
     "core/scene/material.h", "core/scene/interface.h", "core/scene/numerics.h",

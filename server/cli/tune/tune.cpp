@@ -22,6 +22,7 @@
 #include "server/cli/simulate/simulate_interrupt.h"
 #include "server/cli/tune/tune_progress.h"
 #include "server/cli/tune/tune_report.h"
+#include "server/people/governor_points.h"
 
 namespace vat {
 namespace {
@@ -53,6 +54,7 @@ struct TuneOptions {
   std::optional<Real> error;
   bool real_time = false;
   std::string output;
+  std::string front;
   bool exhaustive = false;
   int repetitions = 3;
   std::size_t threads = 1;
@@ -94,6 +96,35 @@ Status write_choice(const TuneOptions& options, const tune::Candidate& candidate
   return write_output_file(options.output, text.value());
 }
 
+/// Returns the choice and the cheaper points among which a session's governor can choose.
+std::vector<GovernorPoint> governor_points(const Scene& scene, const tune::Tuning& tuning,
+                                           const TuneReport& report, const tune::Point& choice) {
+  const std::vector<tune::Candidate>& candidates = tuning.set().candidates;
+  std::vector<tune::Point> suitable;
+  for (const tune::Point& point : report.points) {
+    const tune::Candidate& chosen = candidates[choice.candidate];
+    if (tune::can_change(chosen, candidates[point.candidate], scene)) suitable.push_back(point);
+  }
+  std::vector<GovernorPoint> points;
+  for (const tune::Point& point : tune::cheaper_points(suitable, choice, kMaxGovernorPoints)) {
+    const bool has_liquid = tuning.set().has_liquid;
+    points.push_back(
+        {tune::change_to(candidates[point.candidate], has_liquid), point.error, point.seconds});
+  }
+  return points;
+}
+
+/// Writes the parameters of session.configure.
+Status write_front(const TuneOptions& options, std::span<const GovernorPoint> points) {
+  if (points.size() < 2) {
+    return Error{"not_reached", "",
+                 "no completed candidate of the same solver is faster than the choice"};
+  }
+  const Json params{{"governor", write_governor_points(points)}};
+  constexpr int kIndent = 2;
+  return write_output_file(options.front, params.dump(kIndent) + '\n');
+}
+
 Result<tune::Point> choose_point(const TuneOptions& options, const tune::Tuning& tuning,
                                  const TuneReport& report) {
   if (options.error) {
@@ -113,7 +144,7 @@ void print_report(const tune::Tuning& tuning, const TuneReport& report) {
             << report.plot();
 }
 
-int finish_tuning(const TuneOptions& options, const tune::Tuning& tuning,
+int finish_tuning(const Scene& scene, const TuneOptions& options, const tune::Tuning& tuning,
                   const TuneReport& report) {
   if (!options.error && !options.real_time) return kExitOk;
   const Result<tune::Point> choice = choose_point(options, tuning, report);
@@ -121,11 +152,18 @@ int finish_tuning(const TuneOptions& options, const tune::Tuning& tuning,
   const tune::CandidateSet& set = tuning.set();
   const tune::Candidate& candidate = set.candidates[choice.value().candidate];
   std::cout << "\nchosen: " << describe(candidate, set.has_liquid) << '\n';
-  if (options.output.empty()) return kExitOk;
-  if (const Status written = write_choice(options, candidate, set.has_liquid); !written) {
-    return fail(options.output, written.errors());
+  if (!options.output.empty()) {
+    if (const Status written = write_choice(options, candidate, set.has_liquid); !written) {
+      return fail(options.output, written.errors());
+    }
+    std::cout << "written to " << options.output << '\n';
   }
-  std::cout << "written to " << options.output << '\n';
+  if (options.front.empty()) return kExitOk;
+  const auto points = governor_points(scene, tuning, report, choice.value());
+  if (const Status written = write_front(options, points); !written) {
+    return fail(options.front, written.errors());
+  }
+  std::cout << points.size() << " points for the governor written to " << options.front << '\n';
   return kExitOk;
 }
 
@@ -166,7 +204,7 @@ int tune_scene(const TuneOptions& options) {
     fail(options.scene, {{"interrupted", "", "interrupted; the front is incomplete"}});
     return kExitSignal + interrupt.signal();
   }
-  return finish_tuning(options, tuning.value(), report);
+  return finish_tuning(scene.value(), options, tuning.value(), report);
 }
 
 std::string check_tuned_name(const std::string& name) {
@@ -196,6 +234,10 @@ void add_tune_command(CLI::App& app, int& exit_code) {
       ->add_option("--write", options->output,
                    "Scene file for the choice; it may be that of the scene")
       ->check(CLI::Validator(check_tuned_name, "FILE"));
+  command
+      ->add_option("--front", options->front,
+                   "File for the choice and the cheaper points of a session's governor")
+      ->check(CLI::Validator(check_tuned_name, "FILE"));
   command->add_flag("--exhaustive", options->exhaustive, "Drop no candidate early");
   command->add_option("--repetitions", options->repetitions, "Timed runs of the best candidates")
       ->check(CLI::Range(1, kMostRepetitions))
@@ -205,8 +247,12 @@ void add_tune_command(CLI::App& app, int& exit_code) {
       ->capture_default_str();
   command->footer(kTuneFooter);
   command->callback([options, &exit_code] {
-    if (!options->output.empty() && !options->error && !options->real_time) {
+    const bool chooses = options->error || options->real_time;
+    if (!options->output.empty() && !chooses) {
       throw CLI::RequiredError("--write needs --error or --real-time, which");
+    }
+    if (!options->front.empty() && !chooses) {
+      throw CLI::RequiredError("--front needs --error or --real-time, which");
     }
     exit_code = tune_scene(*options);
   });

@@ -9,6 +9,19 @@
 
 namespace vat {
 
+namespace {
+
+/// Ends the permission of the governor, which belongs to the scene before.
+void start_loaded_scene(SessionHistory& history, Participants& participants,
+                        const SessionPeople& people) {
+  const bool was_governed = !history.governor_points().empty();
+  history.mark_scene();
+  if (!was_governed) return;
+  participants.send_event(write_event("session.configured", people.describe_settings()));
+}
+
+}  // namespace
+
 SessionCore::SessionCore(std::string id, SessionSettings settings, Simulation simulation,
                          const SessionEnvironment& environment)
     : SessionCore(std::move(id), std::move(settings), std::move(simulation),
@@ -43,14 +56,14 @@ void SessionCore::set_speed(double speed) {
 
 void SessionCore::load(Simulation simulation) {
   run_.load(std::move(simulation));
-  history_.mark_scene();
+  start_loaded_scene(history_, participants_, people_);
   start_scene();
   clock_.restart_rate();
 }
 
 void SessionCore::restore(Simulation simulation, const Simulation& as_loaded, std::uint64_t tick) {
   run_.restore(std::move(simulation), as_loaded, tick);
-  history_.mark_scene();
+  start_loaded_scene(history_, participants_, people_);
   start_scene();
   clock_.restart_rate();
 }
@@ -143,6 +156,10 @@ ActionResult SessionCore::execute(const LogEntry& entry, const SessionAction& ac
 ActionResult SessionCore::act(ParticipantNumber participant, const SessionAction& action) {
   VAT_CHECK(action != nullptr);
   try {
+    if (participant == kServerItself) {
+      Participant server;
+      return action(*this, server);
+    }
     return action(*this, participants_.find_or_add(participant));
   } catch (const StorageError& error) {
     log_error("session {}: {}", context_.id, error.what());

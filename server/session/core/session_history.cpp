@@ -20,6 +20,12 @@ void SessionHistory::set_sequences(std::uint64_t sequence, std::uint64_t scene_s
   scene_sequence_ = scene_sequence;
 }
 
+std::span<const GovernorPoint> SessionHistory::governor_points() const {
+  const GovernorPermission& permission = context_.settings.governor;
+  if (permission.scene != scene_sequence_) return {};
+  return permission.points;
+}
+
 LogEntry SessionHistory::make_entry(ParticipantNumber participant, std::string_view method,
                                     std::string params) const {
   return {0,    run_.position(), run_.tick(), participant, std::string(method), std::move(params),

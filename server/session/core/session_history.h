@@ -41,6 +41,11 @@ class SessionHistory {
   /// Marks the last executed entry as the entry that loaded the current scene.
   void mark_scene() { scene_sequence_ = sequence_; }
   void set_sequences(std::uint64_t sequence, std::uint64_t scene_sequence);
+  /// Returns the sequence of the entry that loaded the current scene.
+  std::uint64_t scene_sequence() const { return scene_sequence_; }
+  /// Returns the points among which the governor may choose. Empty unless the owner has permitted
+  /// it for the current scene.
+  std::span<const GovernorPoint> governor_points() const;
 
   LogEntry make_entry(ParticipantNumber participant, std::string_view method,
                       std::string params) const;

@@ -151,6 +151,10 @@ Json SessionNotifier::status() const {
       {"particles", run_.simulation().particle_count()},
   };
   if (context_.playback != nullptr) status["position"] = run_.position();
+  const std::span<const GovernorPoint> points = history_.governor_points();
+  if (const auto point = find_point(points, run_.simulation().scene())) {
+    status["governor"] = {{"point", *point}, {"error", points[*point].error}};
+  }
   return status;
 }
 

@@ -166,13 +166,17 @@ void SessionPeople::set_role(Participant& participant, Role role) {
 void SessionPeople::configure(SessionSettings settings) {
   context_.settings = std::move(settings);
   participants_.send_event(write_event("session.configured", describe_settings()));
+  notifier_.mark_status();
 }
 
 Json SessionPeople::describe_settings() const {
   const SessionSettings& settings = context_.settings;
-  return {{"name", settings.name},
-          {"default_role", to_string(settings.default_role)},
-          {"locked", settings.is_locked}};
+  Json described{{"name", settings.name},
+                 {"default_role", to_string(settings.default_role)},
+                 {"locked", settings.is_locked}};
+  const std::span<const GovernorPoint> points = history_.governor_points();
+  if (!points.empty()) described["governor"] = write_governor_points(points);
+  return described;
 }
 
 void SessionPeople::bound_absences() {

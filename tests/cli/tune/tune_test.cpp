@@ -4,6 +4,7 @@
 #include <csignal>
 
 #include "protocol/scene/scene_json.h"
+#include "server/people/governor_points.h"
 #include "tests/cli/program.h"
 
 namespace vat::test::tune_test {
@@ -11,6 +12,7 @@ namespace {
 
 using testing::Contains;
 using testing::ElementsAre;
+using testing::EndsWith;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::MatchesRegex;
@@ -63,6 +65,35 @@ TEST(Tune, WritesAChoiceThatIsValid) {
   EXPECT_GT(read_scene_file(file).value().numerics.step, 0.001);
 }
 
+// In runs of 5 s, the choice is Runge-Kutta 4. Other integrators are faster.
+TEST(Tune, WritesTheChoiceAndCheaperPointsForTheGovernor) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file("front.json");
+  const ProgramResult result = run_vat({"tune", test_scene("pair"), "--until", "5", "--error",
+                                        "2e-3", "--exhaustive", "--front", file});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(lines_of(result.out).back(), EndsWith(" points for the governor written to " + file));
+  const Json params = Json::parse(read_file(file));
+  Errors errors;
+  ObjectReader reader(params, "", errors);
+  const std::vector<GovernorPoint> points = read_governor_points(reader, "governor", errors);
+  reader.refuse_unknown();
+  EXPECT_THAT(errors, IsEmpty());
+  ASSERT_GE(points.size(), 2u);
+  EXPECT_EQ(points.front().numerics.integrator, IntegratorId::runge_kutta_4);
+  EXPECT_LE(points.front().error, 2e-3);
+  EXPECT_GT(points.back().error, 2e-3);
+}
+
+TEST(Tune, AFrontWithoutCheaperPointsFails) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      run_vat(tune_pair({"--error", "1", "--front", folder.file("front.json")}));
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.err, HasSubstr("no completed candidate of the same solver is faster"));
+  EXPECT_THAT(folder.names(), IsEmpty());
+}
+
 TEST(Tune, ChoosesForRealTime) {
   const ProgramResult result = run_vat(tune_pair({"--real-time"}));
   EXPECT_EQ(result.exit_code, 0) << result.err;
@@ -112,6 +143,8 @@ TEST(Tune, BenchComparesTheChoicesWithAnExhaustiveSearch) {
 TEST(Tune, RefusesWrongOptions) {
   for (const auto& [options, named] : std::vector<std::pair<std::vector<std::string>, std::string>>{
            {{"--write", "out.json"}, "--error or --real-time"},
+           {{"--front", "out.json"}, "--error or --real-time"},
+           {{"--error", "0.1", "--front", "out.txt"}, "must end in .json"},
            {{"--error", "0.1", "--write", "out.txt"}, "must end in .json"},
            {{"--error", "0.1", "--real-time"}, "excludes"},
            {{"--error", "0"}, "--error"},

@@ -171,5 +171,58 @@ TEST(SetNumerics, OfASceneWithEmittersKeepTheStep) {
   expect_goes_on(simulation, 5);
 }
 
+TEST(SetNumerics, ControlAndTolerancesAreAsThoughTheSceneHadThem) {
+  for (const StepControl control : {StepControl::adaptive, StepControl::local}) {
+    Simulation simulation = make_simulation(ticked_scene());
+    ASSERT_TRUE(simulation.set_numerics({.control = control, .tolerance = 0.05}).ok());
+    Scene described = ticked_scene();
+    described.numerics.control = control;
+    described.numerics.tolerance = 0.05;
+    Simulation expected = make_simulation(described);
+    for (int tick = 0; tick < 3; ++tick) {
+      run_ticks(simulation, 1);
+      run_ticks(expected, 1);
+      EXPECT_EQ(simulation.state_hash(), expected.state_hash()) << to_string(control);
+    }
+    ASSERT_TRUE(simulation.set_numerics({.control = StepControl::fixed}).ok());
+    expect_goes_on(simulation, 3);
+  }
+}
+
+TEST(SetNumerics, TolerancesOfIncompressibleLiquidsChange) {
+  Scene scene = ticked_scene();
+  scene.pressure_solver = PressureSolver::incompressible;
+  scene.numerics.integrator = IntegratorId::symplectic_euler;
+  Simulation simulation = make_simulation(scene);
+  ASSERT_TRUE(
+      simulation.set_numerics({.density_tolerance = 0.01, .divergence_tolerance = 0.02}).ok());
+  scene.incompressible.density_tolerance = 0.01;
+  scene.incompressible.divergence_tolerance = 0.02;
+  Simulation expected = make_simulation(scene);
+  run_ticks(simulation, 3);
+  run_ticks(expected, 3);
+  EXPECT_EQ(simulation.state_hash(), expected.state_hash());
+  expect_goes_on(simulation, 3);
+}
+
+TEST(SetNumerics, WrongControlAndTolerancesAreNamed) {
+  Simulation simulation = make_simulation(ticked_scene());
+  const std::uint64_t hash = simulation.state_hash();
+  EXPECT_EQ(errors_of(simulation.set_numerics({.tolerance = 0})), "out_of_range /tolerance");
+  EXPECT_EQ(errors_of(simulation.set_numerics({.density_tolerance = 1})),
+            "out_of_range /density_tolerance");
+  EXPECT_EQ(errors_of(simulation.set_numerics({.divergence_tolerance = 1})),
+            "out_of_range /divergence_tolerance");
+  EXPECT_EQ(errors_of(simulation.set_numerics(
+                {.integrator = IntegratorId::heun, .control = StepControl::local})),
+            "not_allowed /control");
+  EXPECT_TRUE(simulation.set_numerics(NumericsChange{}).ok());
+  EXPECT_EQ(simulation.state_hash(), hash);
+  Scene projecting = ticked_scene();
+  projecting.default_interface = InterfaceConstants{.law = InterfaceLaw::projection};
+  EXPECT_EQ(errors_of(make_simulation(projecting).set_numerics({.control = StepControl::local})),
+            "not_allowed /control");
+}
+
 }  // namespace
 }  // namespace vat::numerics_command_test

@@ -11,10 +11,12 @@ from pathlib import Path
 import schemas
 
 LEAST_SCRIPTS = 40
-# Error kinds and events that a client cannot cause, the end of the server, and clusters.
+# Error kinds and events that a client cannot cause, the end of the server, and clusters. The events
+# of the governor depend on the speed of the machine.
 NOT_SHOWN = {
     "internal_error", "storage_failed", "not_recovered", "session.diverged", "session.storage",
     "server.draining", "server.drain", "server.move", "moved", "session.moved",
+    "governor.switched",
 }
 # Limits that apply before a WebSocket is open or below its messages.
 BELOW_MESSAGES = {"handshake_seconds", "ping_seconds"}

@@ -121,5 +121,35 @@ TEST(Candidates, TextsNameTheNumerics) {
             "incompressible, 0.0005 / 1e-05, velocity_verlet, adaptive 0.01, 2.5 ms");
 }
 
+TEST(CandidateChanges, RunningSessionsKeepTheSolver) {
+  const Scene scene = catalogue_scene("dam-break");
+  const Scene flowing = catalogue_scene("pour");
+  const Candidate own = tune::candidate_of(scene);
+  Candidate other = own;
+  other.numerics.integrator = IntegratorId::runge_kutta_4;
+  other.numerics.control = StepControl::adaptive;
+  EXPECT_TRUE(can_change(own, other, scene));
+  EXPECT_TRUE(can_change(own, other, flowing));
+  other.numerics.step = own.numerics.step / 2;
+  EXPECT_TRUE(can_change(own, other, scene));
+  EXPECT_FALSE(can_change(own, other, flowing)) << "the scene has an emitter";
+  Candidate solved = own;
+  solved.pressure_solver = own.pressure_solver == PressureSolver::tait
+                               ? PressureSolver::incompressible
+                               : PressureSolver::tait;
+  EXPECT_FALSE(can_change(own, solved, scene));
+}
+
+TEST(CandidateChanges, LeadToTheCandidate) {
+  const Scene scene = catalogue_scene("dam-break");
+  for (const Candidate& candidate : find_candidates(scene).candidates) {
+    Scene solved = scene;
+    solved.pressure_solver = candidate.pressure_solver;
+    const Scene changed = with_change(solved, change_to(candidate, true));
+    EXPECT_EQ(describe(tune::candidate_of(changed), true), describe(candidate, true));
+    EXPECT_TRUE(has_numerics(changed, change_to(candidate, true)));
+  }
+}
+
 }  // namespace
 }  // namespace vat::candidates_test

@@ -63,5 +63,17 @@ TEST(Front, TooSlowScenesNameTheFastestPoint) {
   EXPECT_FALSE(tune::choose_for_real_time({}));
 }
 
+TEST(Front, CheaperPointsBeginWithTheChoice) {
+  const auto cheaper = [](std::size_t choice, std::size_t most) {
+    return indices(tune::cheaper_points(kPoints, kPoints[choice], most));
+  };
+  EXPECT_THAT(cheaper(3, 4), ElementsAre(3, 4, 2, 0));
+  // Candidate 7 is not in the front. Candidates 3 and 6 have no greater error.
+  EXPECT_THAT(cheaper(7, 9), ElementsAre(7, 4, 2, 0));
+  EXPECT_THAT(cheaper(0, 9), ElementsAre(0));
+  EXPECT_THAT(cheaper(5, 3), ElementsAre(5, 4, 0));
+  EXPECT_THAT(cheaper(5, 2), ElementsAre(5, 0));
+}
+
 }  // namespace
 }  // namespace vat::front_test

@@ -250,6 +250,25 @@ struct SceneLimit {
   std::size_t needed;
 };
 
+TEST(SceneLimits, HoldForStepsOfARunningSession) {
+  const Simulation simulation = mixed();
+  ServerSettings settings;
+  settings.limits.max_particle_steps_per_tick =
+      simulation.greatest_particle_count() * simulation.steps_per_tick();
+  const Catalogue catalogue = make_catalogue();
+  TestServer server(catalogue, settings);
+  ASSERT_TRUE(server.create_session("n", to_scene(mixed_scene_text())).ok());
+  TestClient client(server, 1);
+  client.result("session.join");
+  client.result("control.pause");
+  const Json before = client.result("session.hash");
+  const Json error = client.error("world.set_numerics", {{"step", 0.001}});
+  EXPECT_EQ(error.at("data").at("limit"), "particle_steps_per_tick");
+  EXPECT_EQ(client.result("session.hash"), before);
+  client.result("world.set_numerics", {{"step", 0.0025}});
+  client.result("world.set_numerics", {{"step", 0.002}});
+}
+
 // The scene needs exactly the limit.
 TEST(SceneLimits, HoldAtTheirValueAndNotBeyond) {
   const Scene scene = to_scene(mixed_scene_text());

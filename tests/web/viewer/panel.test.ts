@@ -3,8 +3,10 @@ import type { GuardEvent, SessionDescription } from '../../../web/client/index';
 import * as format from '../../../web/viewer/panel/format';
 import { lossInWords, qualityInWords } from '../../../web/viewer/panel/status/quality';
 import { FrameMeter } from '../../../web/viewer/panel/status/frame_meter';
+import { eventInWords } from '../../../web/viewer/panel/event_words';
 import { describeGuard } from '../../../web/viewer/panel/notices';
 import { sliderSpeed } from '../../../web/viewer/panel/playback';
+import { readPoints } from '../../../web/viewer/people/governor_row';
 import { chosenSession, givenToken, streamUrl } from '../../../web/viewer/stream/stream';
 import { roundLength } from '../../../web/viewer/view/base/ground';
 
@@ -22,6 +24,12 @@ describe('numbers in words', () => {
     [17_640, '17.6 kB'],
     [1_234_000, '1.23 MB'],
   ])('%d bytes', (bytes, text) => expect(format.formatBytes(bytes)).toBe(text));
+
+  it.each([
+    [0.01, '1 %'],
+    [0.00123, '0.12 %'],
+    [1.234, '120 %'],
+  ])('a relative error of %d', (error, text) => expect(format.formatError(error)).toBe(text));
 
   it('seconds, milliseconds and factors', () => {
     expect(format.formatSeconds(1.5)).toBe('1.50 s');
@@ -98,6 +106,30 @@ describe('actions of the guard', () => {
     const words = describeGuard({ ...guard, body: 9, recovered: false }, description);
     expect(words).toContain('of body 9 moved too fast. The session has paused');
   });
+});
+
+describe('a switch of the governor', () => {
+  it.each([
+    ['behind', 'The server reduces the accuracy to keep up: error 1 %.'],
+    ['reserve', 'The server computes more accurately again: error 1 %.'],
+  ] as const)('because of %s', (reason, text) => {
+    const params = { tick: 1, point: 1, error: 0.01, reason };
+    expect(eventInWords({ event: 'governor.switched', params })?.text).toBe(text);
+  });
+});
+
+describe('a file of points for the governor', () => {
+  it('is the parameters of session.configure', () => {
+    const point = { integrator: 'heun', step: 0.001, error: 0.01, seconds: 0.5 };
+    expect(readPoints(JSON.stringify({ governor: [point] }), 'front.json')).toEqual({
+      points: [point],
+    });
+  });
+
+  it.each(['{', 'null', '[]', '{"governor": []}', '{"format": "vat.scene/1"}'])(
+    'is not %s',
+    (text) => expect(readPoints(text, 'a.json')).toHaveProperty('fault'),
+  );
 });
 
 describe('sliderSpeed', () => {

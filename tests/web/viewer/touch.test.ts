@@ -108,6 +108,7 @@ describe('the state in words', () => {
     [{ playing: false, people: 3 }, 'Paused · Dew · 3 people here.'],
     [{ speed: 0.5 }, 'Plays at 0.50 × · Dew.'],
     [{ slow: true, factor: 0.97 }, 'Plays in real time · Dew.'],
+    [{ reducedError: 0.01 }, 'Plays in real time · Accuracy reduced: error 1 % · Dew.'],
   ])('%o', (change, words) => expect(summarise({ ...state, ...change })).toBe(words));
 
   it.each([

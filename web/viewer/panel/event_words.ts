@@ -1,4 +1,5 @@
 import type { Event, SessionDescription } from '../../client/index';
+import { formatError } from './format';
 import { describeGuard } from './notices';
 import type { Notice } from './notices';
 
@@ -34,6 +35,14 @@ export function eventInWords(
             text: 'The server cannot store changes of this session, and rejects them.',
           }
         : { level: 'warning', text: 'The server stores changes of this session again.' };
+    case 'governor.switched':
+      return {
+        level: 'warning',
+        text:
+          params.reason === 'behind'
+            ? `The server reduces the accuracy to keep up: error ${formatError(params.error)}.`
+            : `The server computes more accurately again: error ${formatError(params.error)}.`,
+      };
     case 'session.moved': // the page shows that it connects to the next server
     case 'grab.ended': // the marker disappears with the grab
     case 'session.description': // reported separately

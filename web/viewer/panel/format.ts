@@ -28,6 +28,11 @@ export function formatMilliseconds(seconds: number): string {
   return `${Math.round(1000 * seconds)} ms`;
 }
 
+/** Formats a relative error with two digits. */
+export function formatError(error: number): string {
+  return `${Number((100 * error).toPrecision(2))} %`;
+}
+
 /** Formats a small length [m] with two digits. */
 export function formatLength(metres: number): string {
   const millimetres = 1000 * metres;

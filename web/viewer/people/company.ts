@@ -3,6 +3,7 @@ import { ask } from '../panel/desk';
 import type { Desk } from '../panel/desk';
 import type { View } from '../view/view';
 import { Cursors } from './cursors';
+import { GovernorRow } from './governor_row';
 import { People } from '../stream/people';
 import { PeopleList } from './people_list';
 import { Share } from './share';
@@ -30,6 +31,7 @@ export class Company {
       lock: (locked) => this.call('session.configure', { locked }),
       nameOfBody,
     });
+    new GovernorRow(this.people, desk);
     const { canvas } = view.stage;
     this.cursors = new Cursors(this.people, view.stage, view.world, (position) => {
       // A lost pointer position does not matter, because the next one follows.

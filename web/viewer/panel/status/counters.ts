@@ -1,7 +1,7 @@
 import type { Frame, SessionStatus } from '../../../client/index';
 import { element } from '../elements';
-import { formatBytes, formatCount, formatFactor, formatMilliseconds } from '../format';
-import { formatSeconds } from '../format';
+import { formatBytes, formatCount, formatError, formatFactor } from '../format';
+import { formatMilliseconds, formatSeconds } from '../format';
 import { FrameMeter } from './frame_meter';
 import { qualityInWords } from './quality';
 
@@ -30,6 +30,8 @@ export class Counters {
   private readonly tick = field('tick');
   private readonly time = field('time');
   private readonly rate = field('rate');
+  private readonly accuracyRow = field('accuracy-row');
+  private readonly accuracy = field('accuracy');
   private readonly particles = field('particles');
   private readonly frameBytes = field('frame-bytes');
   private readonly byteRate = field('byte-rate');
@@ -84,6 +86,7 @@ export class Counters {
     // Frames report slowness, because each change of it sends a frame.
     this.showRate(status.real_time_factor, this.rate.dataset.slow === 'true');
     write(this.particles, status.particles, formatCount(status.particles));
+    this.showAccuracy(status.governor);
   }
 
   private showTick(tick: number, time: number): void {
@@ -94,6 +97,13 @@ export class Counters {
   private showRate(factor: number, slow: boolean): void {
     this.rate.dataset.slow = String(slow);
     write(this.rate, factor, (slow ? 'slow, ' : '') + formatFactor(factor));
+  }
+
+  private showAccuracy(governor: SessionStatus['governor']): void {
+    this.accuracyRow.hidden = governor === undefined;
+    if (!governor) return;
+    const reduced = governor.point > 0 ? 'reduced, ' : '';
+    write(this.accuracy, governor.error, `${reduced}error ${formatError(governor.error)}`);
   }
 
   private writeRates(): void {

@@ -20,6 +20,7 @@ export class LiveSummary {
   private playing = false;
   private speed = 1;
   private factor = 1;
+  private reducedError: number | undefined;
   private people: People | undefined;
   private scene = 'No scene';
   private held: string | undefined;
@@ -45,8 +46,9 @@ export class LiveSummary {
     this.shownAt = now();
   }
 
-  showStatus({ playing, speed, real_time_factor }: SessionStatus): void {
+  showStatus({ playing, speed, real_time_factor, governor }: SessionStatus): void {
     [this.playing, this.speed, this.factor] = [playing, speed, real_time_factor];
+    this.reducedError = governor && governor.point > 0 ? governor.error : undefined;
     this.write();
   }
 
@@ -77,6 +79,7 @@ export class LiveSummary {
       speed: this.speed,
       slow: this.isSlow,
       factor: this.factor,
+      reducedError: this.reducedError,
       scene: this.scene,
       people: people?.all.filter(({ away }) => !away).length ?? 0,
       role: people?.self?.role,

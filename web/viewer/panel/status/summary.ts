@@ -1,5 +1,5 @@
 import { element } from '../elements';
-import { formatFactor } from '../format';
+import { formatError, formatFactor } from '../format';
 
 export interface State {
   isConnected: boolean;
@@ -12,6 +12,8 @@ export interface State {
   /** Whether the server does not reach the set speed. */
   slow: boolean;
   factor: number;
+  /** The relative error, if the server has reduced the accuracy. */
+  reducedError?: number | undefined;
   scene: string;
   people: number;
   role: string | undefined;
@@ -31,6 +33,8 @@ const kSilent = 3;
 export function summarise(state: State): string {
   if (!state.isConnected) return absent(state);
   const parts = [state.playing ? playing(state) : 'Paused'];
+  if (state.reducedError !== undefined)
+    parts.push(`Accuracy reduced: error ${formatError(state.reducedError)}`);
   parts.push(state.scene);
   if (state.people > 1) parts.push(`${state.people} people here`);
   if (state.held !== undefined)
