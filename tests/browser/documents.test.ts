@@ -30,7 +30,6 @@ function runExample(document: string): unknown[][] {
   const program = String(example).replace(imported, '').replace('ws://127.0.0.1:8080/ws', address);
   const logged: unknown[][] = [];
   const log = (...values: unknown[]): number => logged.push(values);
-  // eslint-disable-next-line @typescript-eslint/no-implied-eval
   const run = new Function('Session', 'WebSocket', 'console', `${program}\nreturn session;`);
   sessions.push(run(Session, RecordedSocket, { log }) as Session);
   return logged;
