@@ -47,9 +47,8 @@ class CoupledSimulation {
 
   /// Advances by `steps` nominal steps. If a step fails, the report states this, and the state is
   /// that before the failed step. Fails if an external body supplies an invalid motion. The
-  /// coupling has then ended: all later calls fail with the same errors. Paths begin with the name
-  /// of the body: "/bodies/NAME". The coupling also ends if an external body throws an
-  /// exception.
+  /// coupling has then ended: all later calls fail with the same errors. The path of each error
+  /// begins with "/bodies/NAME". The coupling also ends if an external body throws an exception.
   Result<AdvanceReport> advance(std::uint32_t steps);
 
   /// Returns the scene. Its snapshots do not contain the external bodies; see save().

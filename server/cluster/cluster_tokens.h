@@ -14,8 +14,8 @@
 namespace vat {
 
 /// Bucket of a cluster with the uses of its invitations and tickets. A use requires the revision
-/// that it replaces, so that two nodes cannot both grant the last use. The bucket contains hashes
-/// of tokens only.
+/// that it replaces, so that two nodes cannot both grant the last use. The bucket contains the
+/// hashes of the tokens, and no token.
 class ClusterTokens final : public SharedTokens {
  public:
   /// `executor` runs work that waits. `instance` differs from the instances of other processes.
