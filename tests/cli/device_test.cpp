@@ -1,8 +1,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+#include <chrono>
+
+#include "server/cli/common/device_use.h"
+#include "server/cli/common/scene_argument.h"
 #include "tests/cli/program.h"
 #include "tests/cli/readers.h"
+#include "tests/support/thread_runner.h"
 
 // Commands on an OpenCL device. The test machine has the device PoCL, which computes on its
 // processor.
@@ -35,17 +41,45 @@ TEST(DeviceCommand, SimulatesOnADevice) {
   }
 }
 
-// PoCL takes several times as long as the CPU's own path. A scene with solids has no device.
-TEST(DeviceCommand, KeepsScenesThatAreFasterThereOnTheCpu) {
-  for (const std::string& scene : {kDamBreak, test_scene("mixed")}) {
-    const auto hash = [&](const std::string& device) {
-      const ProgramResult result =
-          run_vat({"simulate", scene, "--until", "0.02", "--hash", "--device", device});
-      EXPECT_EQ(result.exit_code, 0) << result.err;
-      return result.out;
+Simulation start_of(const std::string& scene) {
+  return Simulation::create(load_scene(scene, "").value()).value();
+}
+
+TEST(ChooseDevice, TakesTheFasterOne) {
+  struct Case {
+    int device;  // seconds of the steps
+    int cpu;
+    bool on_cpu;
+  };
+  const Simulation simulation = start_of(kDamBreak);
+  ThreadRunner runner(1);
+  for (const Case& one : {Case{1, 2, false}, Case{2, 1, true}, Case{1, 1, true}}) {
+    const std::array<int, 4> times{0, one.device, 5, 5 + one.cpu};
+    const TimeSource now = [&, next = times.begin()]() mutable {
+      return std::chrono::steady_clock::time_point{std::chrono::seconds(*next++)};
     };
-    EXPECT_EQ(hash("auto"), hash("cpu"));
+    const DeviceChoice choice = choose_device({.is_auto = true}, simulation, runner, now);
+    EXPECT_EQ(choice.is_cpu, one.on_cpu) << one.device << " s, and on the CPU " << one.cpu << " s";
+    EXPECT_FALSE(choice.is_auto);
   }
+}
+
+// A scene with solids has no device.
+TEST(ChooseDevice, MeasuresOnlyScenesThatADeviceTakes) {
+  ThreadRunner runner(1);
+  const TimeSource now = [] {
+    ADD_FAILURE() << "a measurement";
+    return std::chrono::steady_clock::time_point{};
+  };
+  const Simulation mixed = start_of(test_scene("mixed"));
+  EXPECT_TRUE(choose_device({.is_auto = true}, mixed, runner, now).is_cpu);
+}
+
+TEST(DeviceCommand, TakesAnAutomaticDevice) {
+  const ProgramResult result =
+      run_vat({"simulate", kDamBreak, "--until", "0.02", "--hash", "--device", "auto"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_THAT(result.out, ContainsRegex("^hash [0-9a-f]{16}"));
 }
 
 TEST(DeviceCommand, RecordsOnADevice) {

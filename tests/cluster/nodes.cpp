@@ -1,5 +1,7 @@
 #include "tests/cluster/nodes.h"
 
+#include <sys/wait.h>
+
 #include <csignal>
 #include <stdexcept>
 #include <utility>
@@ -46,7 +48,11 @@ void Nodes::start(const std::string& node) {
 }
 
 void Nodes::signal(const std::string& node, int signal) {
-  ::kill(process(node).process(), signal);
+  const int pid = process(node).process();
+  ::kill(pid, signal);
+  // Some threads may run on until the kernel has stopped all of them.
+  siginfo_t stopped;
+  if (signal == SIGSTOP) ::waitid(P_PID, static_cast<id_t>(pid), &stopped, WSTOPPED);
 }
 
 std::string Nodes::url(const std::string& node) const {

@@ -23,7 +23,7 @@ class Nodes {
   /// Starts the node again, after its end.
   void start(const std::string& node);
   script::ServerProcess& process(const std::string& node) { return *nodes_.at(node).process; }
-  /// Sends SIGSTOP or SIGCONT.
+  /// Sends SIGSTOP or SIGCONT. After SIGSTOP, waits until the process has stopped.
   void signal(const std::string& node, int signal);
   std::string url(const std::string& node) const;
   /// Returns the names of all nodes except `node`.

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 PROGRAM, DOCUMENT = sys.argv[1:]
-BLOCK = re.compile(r"(?:<!-- (.*?) -->\n\n)?^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
+BLOCK = re.compile(r"(?:<!-- ([^\n]*) -->\n\n)?^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 ADDRESS = "127.0.0.1:8080"
 PATIENCE = 120  # [s]
 
