@@ -96,6 +96,14 @@ void Session::post(PendingReply reply, SessionCommand command) {
   add({std::move(reply), std::move(command)});
 }
 
+void Session::watch(std::shared_ptr<ClientOutbox> viewer, const Subscription& wanted) {
+  add({PendingReply(std::move(viewer), {}), SessionInbox::Watch{wanted}});
+}
+
+void Session::unwatch(std::shared_ptr<ClientOutbox> viewer) {
+  add({PendingReply(std::move(viewer), {}), SessionInbox::Unwatch{}});
+}
+
 SessionSummary Session::summary() const {
   const std::lock_guard lock(mutex_);
   return summary_;
@@ -219,6 +227,10 @@ void Session::execute(Item item) {
     execute_leave(std::move(item.reply));
   } else if (is_disconnect) {
     execute_disconnect(item.reply);
+  } else if (const auto* watch = std::get_if<SessionInbox::Watch>(&item.task)) {
+    core_->notifier().watch(item.reply.client(), watch->wanted, clock_.now());
+  } else if (std::holds_alternative<SessionInbox::Unwatch>(item.task)) {
+    core_->notifier().unwatch(client);
   } else if (const auto* join = std::get_if<SessionInbox::Join>(&item.task)) {
     execute_join(std::move(item.reply), *join);
   } else {
@@ -387,6 +399,7 @@ void Session::drop_requests() {
 }
 
 void Session::end_core() {
+  core_->notifier().end_watchers();
   core_->set_playback(nullptr);
   playback_.reset();
   core_->run().end();
