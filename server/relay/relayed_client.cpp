@@ -83,7 +83,11 @@ void RelayedClient::join(PendingReply reply, const Grant& access, const std::str
   send(RelayKind::text, Json::object(), write_request(kJoinId, "session.join", params));
 }
 
-void RelayedClient::forward(std::string_view message) {
+void RelayedClient::forward(std::string_view message, bool wants_reply) {
+  {
+    const std::lock_guard lock(mutex_);
+    replies_due_ += wants_reply ? 1 : 0;
+  }
   send(RelayKind::text, Json::object(), std::string(message));
 }
 
@@ -95,7 +99,7 @@ void RelayedClient::leave(PendingReply reply) {
   {
     const std::lock_guard lock(mutex_);
     leaving_ = std::move(reply);
-    leaver_ = shared_from_this();
+    keeper_ = shared_from_this();
   }
   end();
   send(RelayKind::text, Json::object(), write_request(kLeaveId, "session.leave", Json::object()));
@@ -134,7 +138,7 @@ std::uint64_t RelayedClient::tick_locked() const {
 
 bool RelayedClient::has_left() const {
   const std::lock_guard lock(mutex_);
-  return state_ == State::left;
+  return state_ == State::left || state_ == State::closed;
 }
 
 std::uint64_t RelayedClient::tick() const {
@@ -164,7 +168,9 @@ void RelayedClient::receive_text(const std::string& text) {
   if (const std::string_view event = event_of(text); !event.empty()) {
     return receive_event(event, text);
   }
-  if (!receive_reply(text)) outbox_->send(text);
+  if (receive_reply(text)) return;
+  outbox_->send(text);
+  count_reply();
 }
 
 void RelayedClient::receive_event(std::string_view event, const std::string& text) {
@@ -178,7 +184,7 @@ void RelayedClient::receive_event(std::string_view event, const std::string& tex
     // Not before the event, so that no frame of the epoch is sent earlier.
     outbox_->start_epoch(membership_, Json::parse(text).at("params").at("epoch"));
   }
-  if (event == "session.closed") end();
+  if (event == "session.closed") close();
 }
 
 bool RelayedClient::receive_reply(const std::string& text) {
@@ -201,7 +207,7 @@ bool RelayedClient::receive_reply(const std::string& text) {
   const std::lock_guard lock(mutex_);
   if (leaving_) leaving_->answer(message.value("result", Json::object()));
   leaving_.reset();
-  leaver_.reset();
+  keeper_.reset();
   line_->send(RelayKind::end);
   return true;
 }
@@ -238,11 +244,35 @@ void RelayedClient::finish_join(const Json& message) {
 bool RelayedClient::end() {
   const std::lock_guard lock(mutex_);
   if (state_ == State::left) return false;
+  // After close(), the outbox may have another membership.
+  const bool is_member = state_ != State::closed;
   state_ = State::left;
   when_joined_.clear();
+  if (!is_member) return true;
   if (feed_ != nullptr) std::exchange(feed_, nullptr)->remove(outbox_->id());
   outbox_->leave();
   return true;
+}
+
+void RelayedClient::close() {
+  if (!end()) return;
+  const std::lock_guard lock(mutex_);
+  if (replies_due_ == 0) {
+    line_->send(RelayKind::end);
+  } else {
+    state_ = State::closed;
+    keeper_ = shared_from_this();
+  }
+}
+
+void RelayedClient::count_reply() {
+  std::shared_ptr<RelayedClient> keeper;
+  const std::lock_guard lock(mutex_);
+  if (replies_due_ > 0) --replies_due_;
+  if (state_ != State::closed || replies_due_ > 0) return;
+  state_ = State::left;
+  keeper.swap(keeper_);
+  line_->send(RelayKind::end);
 }
 
 void RelayedClient::abandon() {
@@ -257,7 +287,7 @@ void RelayedClient::fail() {
     const std::lock_guard lock(mutex_);
     joining.swap(joining_);
     leaving.swap(leaving_);
-    leaver_.reset();
+    keeper_.reset();
   }
   if (leaving) return leaving->answer(Json{{"tick", tick()}});
   if (!joining) {

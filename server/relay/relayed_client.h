@@ -44,8 +44,8 @@ class RelayedClient : public std::enable_shared_from_this<RelayedClient> {
   /// Opens the link and joins the session. `access` is that of the client. If `token` is not
   /// empty, the client shows it to the owner first. `params` are those of session.join.
   void join(PendingReply reply, const Grant& access, const std::string& token, const Json& params);
-  /// Sends a message of the client to the owner, whose answer the client receives.
-  void forward(std::string_view message);
+  /// Sends a message of the client to the owner, whose reply the client receives.
+  void forward(std::string_view message, bool wants_reply);
   void leave(PendingReply reply);
   /// Answers after the answer of join().
   void subscribe(PendingReply reply, const Subscription& wanted);
@@ -63,7 +63,12 @@ class RelayedClient : public std::enable_shared_from_this<RelayedClient> {
   void fail();
 
  private:
-  enum class State { joining, joined, left };
+  enum class State {
+    joining,
+    joined,
+    closed,  ///< the session has ended, and replies to earlier requests follow
+    left
+  };
   void send(RelayKind kind, Json fields, std::string body);
   void receive_text(const std::string& text);
   void receive_event(std::string_view event, const std::string& text);
@@ -72,8 +77,10 @@ class RelayedClient : public std::enable_shared_from_this<RelayedClient> {
   void finish_join(const Json& message);
   /// Calls `task` when the client has joined, or drops it if the join fails.
   void when_joined(std::function<void()> task);
-  /// Ends the membership. Returns false if it has ended before.
+  /// Ends the membership. Returns false if the link has ended before.
   bool end();
+  void close();
+  void count_reply();
   std::uint64_t tick_locked() const;
 
   const Place place_;
@@ -88,7 +95,8 @@ class RelayedClient : public std::enable_shared_from_this<RelayedClient> {
   RelayInput received_;
   std::optional<PendingReply> joining_;
   std::optional<PendingReply> leaving_;
-  std::shared_ptr<RelayedClient> leaver_;  ///< this client, while it waits for the reply
+  std::size_t replies_due_ = 0;            ///< to forwarded requests
+  std::shared_ptr<RelayedClient> keeper_;  ///< this client, while it waits for replies
   std::vector<std::function<void()>> when_joined_;
   std::shared_ptr<RelayFeed> feed_;  // null: no subscription
   std::uint64_t joined_tick_ = 0;

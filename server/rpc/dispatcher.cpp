@@ -59,7 +59,7 @@ void Dispatcher::receive(const SessionDirectory::Sender& sender, std::string_vie
       return;
     }
     if (sender.relay != nullptr && is_for_owner(std::get<RpcRequest>(request))) {
-      return sender.relay->forward(message);
+      return sender.relay->forward(message, id.has_value());
     }
     PendingReply reply(sender.outbox, id, &directory_.resources().metrics);
     if (!id) reply.set_notification(std::get<RpcRequest>(request).method);

@@ -246,7 +246,8 @@ TEST(Relay, RolesAndErrorsAreThoseOfTheOwner) {
 TEST(Relay, ACreatorOwnsItsSessionOnAnotherNode) {
   Nodes nodes(2, kRelay, {{"a", 1}, {"b", 8}});
   WaitingClient creator = nodes.connect("a");
-  const std::string id = creator.result("session.create", {{"scene", "pool"}}).at("session");
+  const std::string id =
+      creator.result("session.create", {{"name", "lake"}, {"scene", "pool"}}).at("session");
   EXPECT_EQ(nodes.owner_of(id, "a"), "b");
   const Json joined = creator.result("session.join", {{"session", id}});
   EXPECT_EQ(joined.at("role"), "owner");
@@ -254,26 +255,35 @@ TEST(Relay, ACreatorOwnsItsSessionOnAnotherNode) {
   EXPECT_EQ(creator.wait("session.closed").at("params").at("session"), id);
 }
 
-TEST(Relay, AClientContinuesWhenTheOwnerFails) {
-  Nodes nodes(3, kRelay);
+/// Checks that a viewer at a relay continues after the end of the owner.
+void expect_continuation(Nodes& nodes, const std::function<void(const std::string&)>& end_owner) {
   const std::string owner = nodes.owner_of(kSession, "a");
-  const std::string relay = nodes.others(owner).front();
   Received received;
   std::atomic<int> resumed = 0;
   client::Handlers handlers = received.handlers();
   handlers.on_rejoined = [&](const client::SessionJoin::Result& joined) {
     resumed += joined.resumed;
   };
-  client::Client viewer(nodes.url(relay), {}, handlers);
+  client::Client viewer(nodes.url(nodes.others(owner).front()), {}, handlers);
   client::SessionJoin::Params join;
   join.session = kSession;
   viewer.call<client::SessionJoin>(join).get();
   viewer.call<client::FramesSubscribe>({}).get();
   ASSERT_TRUE(wait_until([&] { return received.count > 0; }));
-  nodes.process(owner).kill();
+  end_owner(owner);
   ASSERT_TRUE(wait_until([&] { return resumed == 1; }));
   received.count = 0;
   ASSERT_TRUE(wait_until([&] { return received.count > 0; }));
+}
+
+TEST(Relay, AClientContinuesWhenTheOwnerFails) {
+  Nodes nodes(3, kRelay);
+  expect_continuation(nodes, [&](const std::string& owner) { nodes.process(owner).kill(); });
+}
+
+TEST(Relay, AClientContinuesWhenTheOwnerStops) {
+  Nodes nodes(3, {"--route", "relay", "--drain-seconds", "5"});
+  expect_continuation(nodes, [&](const std::string& owner) { nodes.process(owner).stop(); });
 }
 
 // The owner drops the participants of a relay that has failed.
