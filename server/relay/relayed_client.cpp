@@ -67,6 +67,7 @@ void RelayedClient::join(PendingReply reply, const Grant& access, const std::str
   {
     const std::lock_guard lock(mutex_);
     joining_ = std::move(reply);
+    is_entering_ = !token.empty();
   }
   send(RelayKind::open,
        {{"subject", place_.subject},
@@ -190,11 +191,16 @@ void RelayedClient::receive_event(std::string_view event, const std::string& tex
 bool RelayedClient::receive_reply(const std::string& text) {
   {
     const std::lock_guard lock(mutex_);
-    if (!joining_ && !leaving_) return false;
+    if (!joining_ && !leaving_ && !is_entering_) return false;
   }
   Json message = Json::parse(text);
   const Json& id = message.at("id");
-  if (id == kEnterId) {
+  if (id == kEnterId) {  // may follow the reply to the join
+    {
+      const std::lock_guard lock(mutex_);
+      is_entering_ = false;
+      if (!joining_) return true;
+    }
     if (message.contains("error")) finish_join(message);
     return true;
   }

@@ -95,6 +95,7 @@ class RelayedClient : public std::enable_shared_from_this<RelayedClient> {
   RelayInput received_;
   std::optional<PendingReply> joining_;
   std::optional<PendingReply> leaving_;
+  bool is_entering_ = false;               ///< the owner has not answered the token
   std::size_t replies_due_ = 0;            ///< to forwarded requests
   std::shared_ptr<RelayedClient> keeper_;  ///< this client, while it waits for replies
   std::vector<std::function<void()>> when_joined_;
