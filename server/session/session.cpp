@@ -96,14 +96,6 @@ void Session::post(PendingReply reply, SessionCommand command) {
   add({std::move(reply), std::move(command)});
 }
 
-void Session::watch(std::shared_ptr<ClientOutbox> viewer, const Subscription& wanted) {
-  add({PendingReply(std::move(viewer), {}), SessionInbox::Watch{wanted}});
-}
-
-void Session::unwatch(std::shared_ptr<ClientOutbox> viewer) {
-  add({PendingReply(std::move(viewer), {}), SessionInbox::Unwatch{}});
-}
-
 SessionSummary Session::summary() const {
   const std::lock_guard lock(mutex_);
   return summary_;
