@@ -136,6 +136,11 @@ void warn_of_tolerance(const Numerics& numerics, std::vector<Warning>& warnings)
   }
 }
 
+/// Returns whether the steps are local, or chosen from an accuracy.
+bool may_be_local(const Numerics& numerics) {
+  return numerics.accuracy || numerics.control == StepControl::local;
+}
+
 /// Warns of settings that the pressure solver does not use.
 void warn_of_solver(const Scene& scene, std::vector<Warning>& warnings) {
   const bool is_incompressible = scene.pressure_solver == PressureSolver::incompressible;
@@ -197,6 +202,11 @@ void warn_of_idle_settings(const Scene& scene, std::vector<Warning>& warnings) {
     const std::string path = body_path(b);
     if (body.seed != 0 && body.jitter == 0) {
       warn(path + "/seed", "the body has no jitter", warnings);
+    }
+    if (body.sub_steps > 1 && body.kind == BodyKind::liquid) {
+      warn(path + "/sub_steps", "only solids take sub-steps", warnings);
+    } else if (body.sub_steps > 1 && !may_be_local(scene.numerics)) {
+      warn(path + "/sub_steps", "steps are not local", warnings);
     }
   }
 }

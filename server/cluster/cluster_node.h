@@ -52,6 +52,19 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   std::shared_ptr<SessionReplica> replica_of(std::uint64_t session) override;
 
   const std::string& name() const { return settings_.node; }
+  /// Returns a text that differs from that of all other runs of a node.
+  const std::string& instance() const { return instance_; }
+  const std::string& public_url() const { return settings_.public_url; }
+  NatsConnection& connection() { return connection_; }
+  /// Returns whether a node takes new clients, because it does not stop.
+  bool accepts(const std::string& node) const {
+    const auto found = nodes_.find(node);
+    return found && found->accepts;
+  }
+  /// Returns whether another node may still have its lease.
+  bool is_present(const std::string& node) const {
+    return nodes_.is_seen_within(node, Lease::kOthersTime);
+  }
   /// Returns the instruction set that all present nodes have, at most `greatest`.
   InstructionSet common_instructions(InstructionSet greatest) const;
   /// Adds a new session with its first log entry, owned by this node. Returns its number. Waits.

@@ -10,6 +10,7 @@ struct ClusterSettings {
   std::vector<std::string> servers;  ///< URLs of the NATS servers; empty: no cluster
   std::string node;                  ///< name of the node, unique in the cluster
   std::string public_url;            ///< URL at which clients reach the node
+  std::string route = "redirect";    ///< of clients of other nodes' sessions; or "relay"
   std::string tls_ca;                ///< see NatsSettings
   std::string tls_certificate;
   std::string tls_key;
@@ -18,6 +19,7 @@ struct ClusterSettings {
   std::string key;       ///< key for signed tokens; empty: tokens are not signed
 
   bool is_used() const { return !servers.empty(); }
+  bool is_relay() const { return route == "relay"; }
 };
 
 }  // namespace vat

@@ -66,7 +66,7 @@ std::optional<RpcResult> AccessControl::enter(PendingReply& reply, std::string_v
   // After too many wrong tokens even a valid one is refused, also while the refusals are delayed.
   const bool may_try = client->wrong_tokens < access.max_wrong_tokens;
   if (auto claims = may_try ? claims_to_check(token) : std::nullopt) {
-    return enter_unchecked(reply, *client, hash, *std::move(claims));
+    return enter_unchecked(reply, *client, {std::string(token), hash, *std::move(claims), {}});
   }
   if (const auto use = may_try ? use_token(token, hash) : std::nullopt) {
     // At once, because the client may have sent further requests already.
@@ -89,12 +89,13 @@ std::optional<RpcResult> AccessControl::enter(PendingReply& reply, std::string_v
 }
 
 std::optional<RpcResult> AccessControl::enter_unchecked(PendingReply& reply, Client& client,
-                                                        const TokenHash& hash, TokenClaims claims) {
+                                                        UncheckedToken token) {
+  const TokenClaims& claims = token.claims;
   Json answer{{"role", to_string(claims.role)}};
   if (!claims.session.empty()) answer["session"] = claims.session;
-  const Grant before = client.unchecked ? client.unchecked->before : client.access;
+  token.before = client.unchecked ? client.unchecked->before : client.access;
   client.access = {Role::viewer, claims.session, false};
-  client.unchecked = {hash, std::move(claims), before};
+  client.unchecked = std::move(token);
   if (!must_check(client)) return answer;
   check_then(client, [this, answer = std::move(answer),
                       waiting = std::make_shared<PendingReply>(std::move(reply))](auto error) {

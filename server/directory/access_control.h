@@ -39,7 +39,7 @@ class AccessControl {
   /// Returns the content of a valid signed token that must be checked later.
   std::optional<TokenClaims> claims_to_check(std::string_view token) const;
   std::optional<RpcResult> enter_unchecked(PendingReply& reply, Client& client,
-                                           const TokenHash& hash, TokenClaims claims);
+                                           UncheckedToken token);
   void finish_check(ConnectionId id, const AccessTokens::SharedUse& use);
   /// Counts a wrong token, and answers after a delay.
   void refuse_token(Client& client, PendingReply reply);

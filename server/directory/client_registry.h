@@ -9,6 +9,7 @@
 
 #include "server/clients/pending_reply.h"
 #include "server/directory/server_settings.h"
+#include "server/relay/relayed_client.h"
 #include "server/support/owned_mutex.h"
 
 namespace vat {
@@ -16,6 +17,7 @@ namespace vat {
 /// Signed token of a connection, whose validity is not known yet: the owner of its session decides.
 /// The connection may only be redirected to the owner.
 struct UncheckedToken {
+  std::string token;
   TokenHash hash{};
   TokenClaims claims;
   Grant before;  ///< access of the connection before this token
@@ -30,6 +32,9 @@ struct Client {
   /// Requests that wait for the check of the token; not empty: the check runs.
   std::vector<std::function<void(std::optional<RpcError>)>> checks;
   std::size_t wrong_tokens = 0;
+  std::shared_ptr<RelayedClient> relay;  ///< null, or the session is on another node
+  /// Tickets of the sessions on other nodes that the client has created.
+  std::map<SessionId, std::string> tickets;
 };
 
 /// Connections of a server. The caller must hold the directory's lock.

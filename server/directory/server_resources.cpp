@@ -36,6 +36,16 @@ std::unique_ptr<ClusterNode> make_cluster_node(const ServerSettings& settings, S
                                        static_cast<double>(threads), settings.version);
 }
 
+std::unique_ptr<RelayDoor> make_relay_door(const ServerSettings& settings, ClusterNode* cluster,
+                                           ServerMetrics& metrics,
+                                           boost::asio::thread_pool& frame_threads,
+                                           const Clock& clock) {
+  if (cluster == nullptr || !settings.cluster.is_relay()) return nullptr;
+  return std::make_unique<RelayDoor>(
+      RelayDoor::Place{cluster->name(), cluster->instance(), cluster->public_url()},
+      cluster->connection(), metrics, frame_threads, clock);
+}
+
 }  // namespace
 
 SessionId to_id(SessionNumber number) {
@@ -67,6 +77,7 @@ ServerResources::ServerResources(const Catalogue& catalogue_in, ServerSettings s
       storage(open_storage(settings, clock)),
       saved_in_memory(storage ? nullptr : std::make_unique<SavedInMemory>()),
       cluster(make_cluster_node(settings, storage.get(), clock, runner.thread_count())),
+      relay(make_relay_door(settings, cluster.get(), metrics, frame_threads, clock)),
       environment{catalogue,
                   settings.limits,
                   settings.instructions,

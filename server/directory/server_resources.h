@@ -10,6 +10,7 @@
 #include "server/directory/server_settings.h"
 #include "server/http/downloads.h"
 #include "server/messages/rpc_message.h"
+#include "server/relay/relay_door.h"
 #include "server/replay/imports.h"
 #include "server/session/core/session_environment.h"
 #include "server/session/ticks/slow_tick_gate.h"
@@ -53,6 +54,7 @@ struct ServerResources {
   const std::unique_ptr<Storage> storage;                // null: sessions are in memory only
   const std::unique_ptr<SavedInMemory> saved_in_memory;  // null: saved data is in the storage
   const std::unique_ptr<ClusterNode> cluster;            // null: this server is no node
+  const std::unique_ptr<RelayDoor> relay;                // null: clients are redirected
   const SessionEnvironment environment;
   // Limits and budget for the recovery of sessions, which must accept all previously accepted
   // sessions.

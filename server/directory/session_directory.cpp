@@ -35,7 +35,8 @@ SessionDirectory::~SessionDirectory() {
   }
 }
 
-bool SessionDirectory::connect(std::shared_ptr<Connection> connection) {
+bool SessionDirectory::connect(std::shared_ptr<Connection> connection,
+                               const std::optional<Grant>& access) {
   const std::lock_guard lock(tables_.mutex);
   if (!admission_.admits_connection()) return false;
   const ServerLimits& limits = resources_.settings.limits;
@@ -44,7 +45,9 @@ bool SessionDirectory::connect(std::shared_ptr<Connection> connection) {
   outbox->set_meter(std::make_unique<MessageMeter>(limits, resources_.clock.now()));
   if (resources_.cluster) outbox->set_gate(*resources_.cluster);
   outbox->set_read_budget(client_read_budget(limits, resources_.clock.now()));
-  access_.start(tables_.clients.add(std::move(outbox)));
+  Client& client = tables_.clients.add(std::move(outbox));
+  access_.start(client);
+  if (access) client.access = *access;
   return true;
 }
 
@@ -52,6 +55,7 @@ void SessionDirectory::disconnect(ConnectionId id) {
   const std::lock_guard lock(tables_.mutex);
   const Client* client = tables_.clients.find(id);
   if (client == nullptr) return;
+  if (client->relay != nullptr) client->relay->abandon();
   client->outbox->leave();
   if (client->session != 0) {
     tables_.sessions.at(client->session).disconnect(PendingReply(client->outbox, {}));
@@ -63,9 +67,10 @@ void SessionDirectory::disconnect(ConnectionId id) {
 SessionDirectory::Sender SessionDirectory::find_client(ConnectionId id) {
   const std::lock_guard lock(tables_.mutex);
   bound_queues();  // queues grow fast only if clients send messages
-  const Client* client = tables_.clients.find(id);
+  Client* client = tables_.clients.find(id);
   if (client == nullptr || client->outbox->is_closed()) return {};
-  return {client->outbox, client->access.role};
+  if (client->relay != nullptr && client->relay->has_left()) client->relay.reset();
+  return {client->outbox, client->access.role, client->relay};
 }
 
 bool SessionDirectory::is_ready() const {
@@ -190,7 +195,10 @@ RpcResult SessionDirectory::create_from(const Json& scene, Level level, std::str
     const std::lock_guard lock(tables_.mutex);
     if (auto error = admission_.refuse_session()) return *std::move(error);  // before the reading
   }
-  if (auto created = create_elsewhere(scene, level, name)) return *std::move(created);
+  if (auto created = create_elsewhere(scene, level, name)) {
+    keep_ticket(creator.connection, *created);
+    return *std::move(created);
+  }
   auto read = read_named_scene(scene, level, resources_.environment);
   if (auto* error = std::get_if<RpcError>(&read)) return std::move(*error);
   auto created = create(std::move(name), std::get<Scene>(read), std::move(creator));
@@ -278,13 +286,14 @@ void SessionDirectory::undo_join(ConnectionId id, SessionNumber session) {
 std::optional<RpcError> SessionDirectory::leave(PendingReply& reply) {
   const std::lock_guard lock(tables_.mutex);
   Client* const client = tables_.clients.find(reply);
-  if (client == nullptr || client->session == 0) return not_joined();
+  if (client == nullptr || (client->session == 0 && client->relay == nullptr)) return not_joined();
   leave_session(*client, std::move(reply));
   return {};
 }
 
 void SessionDirectory::leave_session(Client& client, PendingReply reply) {
   VAT_CHECK(tables_.mutex.is_held());
+  if (client.relay != nullptr) return std::exchange(client.relay, nullptr)->leave(std::move(reply));
   if (client.session == 0) return;
   client.outbox->leave();
   tables_.sessions.at(client.session).leave(std::move(reply));
@@ -302,7 +311,9 @@ std::optional<RpcError> SessionDirectory::post(PendingReply& reply, SessionComma
 std::optional<std::uint64_t> SessionDirectory::tick_of(const PendingReply& reply) const {
   const std::lock_guard lock(tables_.mutex);
   const Client* client = tables_.clients.find(reply);
-  if (client == nullptr || client->session == 0) return {};
+  if (client == nullptr) return {};
+  if (client->relay != nullptr) return client->relay->tick();
+  if (client->session == 0) return {};
   return tables_.sessions.at(client->session).summary().tick;
 }
 

@@ -38,12 +38,14 @@ class SessionDirectory : private ClusterHost {
   AccessControl& access() { return access_; }
   ReplayOpener& replays() { return replays_; }
 
-  /// Adds a connection. Returns false if the connection is refused.
-  bool connect(std::shared_ptr<Connection> connection);
+  /// Adds a connection. Returns false if the connection is refused. `access` is that of a client of
+  /// another node; absent: the client has to show a token, if access requires one.
+  bool connect(std::shared_ptr<Connection> connection, const std::optional<Grant>& access = {});
   void disconnect(ConnectionId id);
   struct Sender {
     std::shared_ptr<ClientOutbox> outbox;  ///< null: not connected, or closing
     Role role = Role::none;                ///< role granted to the connection
+    std::shared_ptr<RelayedClient> relay;  ///< null: the client is in no session of another node
   };
   /// Returns the sender of a message.
   Sender find_client(ConnectionId id);
@@ -87,6 +89,13 @@ class SessionDirectory : private ClusterHost {
                                 const std::string& reason);
   /// Hands a session over to another node of the cluster. Answers after its state is stored.
   std::optional<RpcError> move(PendingReply& reply, const SessionId& id, const std::string& node);
+  /// Implement RelayHost::Server.
+  bool watch(const std::shared_ptr<ClientOutbox>& viewer, const SessionId& id,
+             const Subscription& wanted);
+  void unwatch(const SessionId& id, std::shared_ptr<ClientOutbox> viewer);
+  /// Sets a function that is called often, and after each change of the cluster's sessions. Call it
+  /// before recover().
+  void on_cluster_change(std::function<void()> function) { cluster_change_ = std::move(function); }
   /// Returns the tick of the client's session at the time of the session's last reply or turn.
   std::optional<std::uint64_t> tick_of(const PendingReply& reply) const;
 
@@ -135,6 +144,14 @@ class SessionDirectory : private ClusterHost {
   /// Returns a session of the cluster that this node does not own.
   std::optional<LocatedSession> find_elsewhere(const std::optional<SessionId>& id) const;
   void add_elsewhere(const Client& client, std::vector<Listed>& list) const;
+  /// Remembers the ticket for a session that the client has created on another node.
+  void keep_ticket(ConnectionId creator, const RpcResult& created);
+  /// Returns whether the owner of a session may accept a client. It may be stopping, or may have
+  /// the session no longer.
+  bool can_relay(const LocatedSession& session) const;
+  /// Joins a session of another node, which serves the client through this node.
+  void join_by_relay(Client& client, PendingReply& reply, const LocatedSession& session,
+                     const JoinRequest& request);
   void tell_moved(SessionNumber number, const std::string& url);
   /// Measures and estimates the memory by use.
   ServerMetrics::Memory memory_use();
@@ -174,6 +191,7 @@ class SessionDirectory : private ClusterHost {
     AbsentSession::Waiting join;
   };
   std::vector<WaitingJoin> waiting_joins_;
+  std::function<void()> cluster_change_;
   std::condition_variable_any drained_;  // signals the end of the time or of the last client
 };
 

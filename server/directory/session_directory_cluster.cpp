@@ -142,19 +142,73 @@ std::optional<RpcError> SessionDirectory::join_elsewhere(PendingReply& reply,
   const auto located = find_elsewhere(id);
   is_missing = !located;
   if (!located) return {};
-  const Client* const client = tables_.clients.find(reply);
+  Client* const client = tables_.clients.find(reply);
   VAT_CHECK(client != nullptr);
   if (auto error = admission_.refuse_access(*client, located->number)) return error;
   if (located->owner != resources_.cluster->name()) {
-    if (auto url = resources_.cluster->url_of(*located)) {
-      return moved_to(to_id(located->number), *url);
+    const auto url = resources_.cluster->url_of(*located);
+    if (url && resources_.relay == nullptr) return moved_to(to_id(located->number), *url);
+    if (url && can_relay(*located)) {
+      join_by_relay(*client, reply, *located, request);
+      return {};
     }
   }
   waiting_joins_.push_back({to_id(located->number), {std::move(reply), std::move(request)}});
   return {};
 }
 
+bool SessionDirectory::can_relay(const LocatedSession& session) const {
+  return resources_.cluster->accepts(session.owner) &&
+         !resources_.relay->has_moved(to_id(session.number), session.epoch);
+}
+
+void SessionDirectory::join_by_relay(Client& client, PendingReply& reply,
+                                     const LocatedSession& session, const JoinRequest& request) {
+  VAT_CHECK(tables_.mutex.is_held());
+  const SessionId id = to_id(session.number);
+  leave_session(client, PendingReply(client.outbox, {}));
+  const Grant& grant = client.unchecked ? client.unchecked->before : client.access;
+  const auto ticket = client.tickets.find(id);
+  std::string token = client.unchecked ? client.unchecked->token : "";
+  if (ticket != client.tickets.end()) token = ticket->second;
+  Json params{{"session", id}};
+  if (!request.name.empty()) params["name"] = request.name;
+  if (request.resume) params["resume"] = *request.resume;
+  if (request.greatest_role) params["role"] = to_string(*request.greatest_role);
+  client.relay = resources_.relay->open(client.outbox, id, session.owner, session.epoch);
+  client.relay->join(std::move(reply), grant, token, params);
+}
+
+void SessionDirectory::keep_ticket(ConnectionId creator, const RpcResult& created) {
+  const auto* result = std::get_if<Json>(&created);
+  if (resources_.relay == nullptr || result == nullptr || !result->contains("ticket")) return;
+  const std::lock_guard lock(tables_.mutex);
+  Client* const client = tables_.clients.find(creator);
+  if (client != nullptr) client->tickets[result->at("session")] = result->at("ticket");
+}
+
+bool SessionDirectory::watch(const std::shared_ptr<ClientOutbox>& viewer, const SessionId& id,
+                             const Subscription& wanted) {
+  const std::lock_guard lock(tables_.mutex);
+  const auto* found = tables_.sessions.find(id);
+  if (found == nullptr) return false;
+  viewer->set_gate(*resources_.cluster);
+  found->second->watch(viewer, wanted);
+  return true;
+}
+
+void SessionDirectory::unwatch(const SessionId& id, std::shared_ptr<ClientOutbox> viewer) {
+  const std::lock_guard lock(tables_.mutex);
+  const auto* found = tables_.sessions.find(id);
+  if (found != nullptr) found->second->unwatch(std::move(viewer));
+}
+
 void SessionDirectory::cluster_changed() {
+  if (cluster_change_) cluster_change_();
+  if (resources_.relay != nullptr) {
+    resources_.relay->end_silent(
+        [this](const std::string& node) { return resources_.cluster->is_present(node); });
+  }
   std::vector<WaitingJoin> waiting;
   {
     const std::lock_guard lock(tables_.mutex);

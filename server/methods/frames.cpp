@@ -6,6 +6,7 @@
 
 #include "core/limits.h"
 #include "server/methods/handlers.h"
+#include "server/methods/parts.h"
 
 namespace vat {
 namespace {
@@ -40,7 +41,7 @@ ByAttribute<double> read_attributes(const Json& value, const std::string& path, 
 
 }  // namespace
 
-SessionAction read_frames_subscribe(ObjectReader& params, Errors& errors) {
+Subscription read_subscription(ObjectReader& params, Errors& errors) {
   Subscription subscription;
   if (params.has("max_error")) subscription.max_error = params.real("max_error", 0, kMaxLength);
   subscription.every = params.count("every", 1, kMaxFrameInterval, 1);
@@ -53,6 +54,11 @@ SessionAction read_frames_subscribe(ObjectReader& params, Errors& errors) {
     subscription.attribute_errors =
         read_attributes(*attributes, params.path_of("attributes"), errors);
   }
+  return subscription;
+}
+
+SessionAction read_frames_subscribe(ObjectReader& params, Errors& errors) {
+  const Subscription subscription = read_subscription(params, errors);
   return [subscription](SessionCore& core, Participant& participant) -> ActionResult {
     core.notifier().subscribe(participant, subscription, core.environment().clock.now());
     return Json::object();

@@ -10,6 +10,9 @@
 /// Functions that several method handlers use.
 namespace vat {
 
+/// Reads the parameters of frames.subscribe.
+Subscription read_subscription(ObjectReader& params, Errors& errors);
+
 /// Returns the parameter `body`, which must be an id. The body may not exist.
 BodyId read_body_id(ObjectReader& params, Errors& errors);
 

@@ -5,6 +5,7 @@
 
 #include "core/support/check.h"
 #include "core/support/nearest_name.h"
+#include "server/methods/parts.h"
 #include "server/support/log.h"
 
 namespace vat {
@@ -17,6 +18,18 @@ RateClass class_of(const std::variant<RpcRequest, RpcError>& request) {
   const auto* good = std::get_if<RpcRequest>(&request);
   const Method* method = good == nullptr ? nullptr : find_method(good->method);
   return method == nullptr ? RateClass::query : method->row.rate_class;
+}
+
+bool controls_frames(std::string_view method) {
+  return method == "frames.subscribe" || method == "frames.unsubscribe";
+}
+
+/// Returns whether the node of the session answers the request, and not this node.
+bool is_for_owner(const RpcRequest& request) {
+  if (request.method == "session.close") return true;
+  const Method* method = find_method(request.method);
+  return method != nullptr && std::holds_alternative<SessionHandler>(method->handler) &&
+         !controls_frames(request.method);
 }
 
 RpcError unknown_method(std::string_view name) {
@@ -45,10 +58,13 @@ void Dispatcher::receive(const SessionDirectory::Sender& sender, std::string_vie
       client.send(write_reply(id.value_or(nullptr), std::move(*error)));
       return;
     }
+    if (sender.relay != nullptr && is_for_owner(std::get<RpcRequest>(request))) {
+      return sender.relay->forward(message, id.has_value());
+    }
     PendingReply reply(sender.outbox, id, &directory_.resources().metrics);
     if (!id) reply.set_notification(std::get<RpcRequest>(request).method);
     if (auto result =
-            call(reply, sender.role, std::get<RpcRequest>(std::move(request)), message.size())) {
+            call(reply, sender, std::get<RpcRequest>(std::move(request)), message.size())) {
       reply.answer(*std::move(result));
     }
   } catch (const StorageError& error) {
@@ -103,8 +119,26 @@ std::optional<RpcError> Dispatcher::refuse_for_memory(const MethodRow& row) cons
   return limit_reached(*excess);
 }
 
-std::optional<RpcResult> Dispatcher::call(PendingReply& reply, Role role, RpcRequest request,
-                                          std::size_t bytes) {
+std::optional<RpcResult> Dispatcher::call_frames(PendingReply& reply, RelayedClient& relay,
+                                                 const RpcRequest& request) {
+  Errors errors;
+  ObjectReader params(request.params, "", errors);
+  const bool subscribes = request.method == "frames.subscribe";
+  const Subscription wanted = subscribes ? read_subscription(params, errors) : Subscription{};
+  params.refuse_unknown();
+  if (!errors.empty()) return invalid_params(errors);
+  if (subscribes) {
+    relay.subscribe(std::move(reply), wanted);
+  } else {
+    relay.unsubscribe(std::move(reply));
+  }
+  return {};
+}
+
+std::optional<RpcResult> Dispatcher::call(PendingReply& reply,
+                                          const SessionDirectory::Sender& sender,
+                                          RpcRequest request, std::size_t bytes) {
+  const Role role = sender.role;
   const Method* method = find_method(request.method);
   if (role == Role::none && (method == nullptr || method->row.least_role > Role::none)) {
     return not_authenticated("the first message must be access.enter");
@@ -131,6 +165,9 @@ std::optional<RpcResult> Dispatcher::call(PendingReply& reply, Role role, RpcReq
     if (!errors.empty()) return invalid_params(errors);
     VAT_CHECK(action != nullptr);
     return action(directory_, reply);
+  }
+  if (sender.relay != nullptr && controls_frames(row.name)) {
+    return call_frames(reply, *sender.relay, request);
   }
   auto command = session_methods().parse(row.name, std::move(request.params));
   if (const auto* errors = std::get_if<Errors>(&command)) return invalid_params(*errors);

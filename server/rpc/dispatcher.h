@@ -32,8 +32,11 @@ class Dispatcher {
   /// Refuses a method that needs memory if the process exceeds its limit.
   std::optional<RpcError> refuse_for_memory(const MethodRow& row) const;
   /// Returns the result, or an empty optional if `reply` was moved and is answered later.
-  std::optional<RpcResult> call(PendingReply& reply, Role role, RpcRequest request,
-                                std::size_t bytes);
+  std::optional<RpcResult> call(PendingReply& reply, const SessionDirectory::Sender& sender,
+                                RpcRequest request, std::size_t bytes);
+  /// Starts or ends the frames of a session on another node.
+  static std::optional<RpcResult> call_frames(PendingReply& reply, RelayedClient& relay,
+                                              const RpcRequest& request);
 
   SessionDirectory& directory_;
 };

@@ -1,8 +1,12 @@
 #include "server/rpc/session_server.h"
 
+#include <exception>
+#include <memory>
 #include <utility>
 
+#include "server/relay/relay_host.h"
 #include "server/rpc/dispatcher.h"
+#include "server/support/log.h"
 
 namespace vat {
 namespace {
@@ -28,12 +32,41 @@ Errors to_errors(const RpcError& error) {
 struct SessionServer::Parts {
   SessionDirectory directory;
   Dispatcher dispatcher{directory};
+  std::shared_ptr<RelayHost> relay;  // null: this server is no node of a cluster
 };
 
 SessionServer::SessionServer(const Catalogue& catalogue, ServerSettings settings, Clock& clock)
-    : parts_(new Parts{.directory{catalogue, std::move(settings), clock, session_methods()}}) {}
+    : parts_(new Parts{.directory{catalogue, std::move(settings), clock, session_methods()},
+                       .relay = nullptr}) {
+  SessionDirectory& directory = parts_->directory;
+  ClusterNode* const cluster = directory.resources().cluster.get();
+  if (cluster == nullptr) return;
+  RelayHost::Server server{
+      *this,
+      [&directory](std::shared_ptr<Connection> connection, const Grant& access) {
+        return directory.connect(std::move(connection), access);
+      },
+      [&directory](const std::shared_ptr<ClientOutbox>& viewer, const std::string& session,
+                   const Subscription& wanted) { return directory.watch(viewer, session, wanted); },
+      [&directory](const std::string& session, std::shared_ptr<ClientOutbox> viewer) {
+        directory.unwatch(session, std::move(viewer));
+      }};
+  parts_->relay =
+      std::make_shared<RelayHost>(cluster->name(), cluster->connection(), std::move(server), clock);
+  directory.on_cluster_change([weak = std::weak_ptr(parts_->relay), cluster] {
+    if (const auto relay = weak.lock()) {
+      relay->end_silent([cluster](const std::string& node) { return cluster->is_present(node); });
+    }
+  });
+}
 
-SessionServer::~SessionServer() = default;
+SessionServer::~SessionServer() {
+  try {
+    stop();  // first, because threads of the directory call the relay
+  } catch (const std::exception& error) {
+    log_error("the server did not stop in order: {}", error.what());
+  }
+}
 
 Result<SessionId> SessionServer::create_session(std::string name, const Scene& scene) {
   auto created = parts_->directory.create(std::move(name), scene, {});
@@ -83,6 +116,7 @@ void SessionServer::count_close(std::uint16_t code) {
 
 void SessionServer::stop() {
   parts_->directory.stop();
+  if (parts_->relay != nullptr) parts_->relay->stop();
 }
 
 void SessionServer::opened(std::shared_ptr<Connection> connection) {

@@ -219,6 +219,10 @@ void Session::execute(Item item) {
     execute_leave(std::move(item.reply));
   } else if (is_disconnect) {
     execute_disconnect(item.reply);
+  } else if (const auto* watch = std::get_if<SessionInbox::Watch>(&item.task)) {
+    core_->notifier().watch(item.reply.client(), watch->wanted, clock_.now());
+  } else if (std::holds_alternative<SessionInbox::Unwatch>(item.task)) {
+    core_->notifier().unwatch(client);
   } else if (const auto* join = std::get_if<SessionInbox::Join>(&item.task)) {
     execute_join(std::move(item.reply), *join);
   } else {
@@ -387,6 +391,7 @@ void Session::drop_requests() {
 }
 
 void Session::end_core() {
+  core_->notifier().end_watchers();
   core_->set_playback(nullptr);
   playback_.reset();
   core_->run().end();

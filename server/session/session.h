@@ -69,6 +69,11 @@ class Session : public std::enable_shared_from_this<Session> {
   /// Executes a command. The participant's role is checked at execution.
   void post(PendingReply reply, SessionCommand command);
 
+  /// Sends frames to a viewer who is no participant, or other frames to a known one. The viewer's
+  /// connection is closed at the end of the session.
+  void watch(std::shared_ptr<ClientOutbox> viewer, const Subscription& wanted);
+  void unwatch(std::shared_ptr<ClientOutbox> viewer);
+
   /// Returns the summary at the time of the last reply or turn.
   SessionSummary summary() const;
 

@@ -23,9 +23,14 @@ class SessionInbox {
   };
   struct Leave {};
   struct Disconnect {};
+  /// The relay of another node wants frames, see SessionNotifier::watch().
+  struct Watch {
+    Subscription wanted;
+  };
+  struct Unwatch {};
   struct Item {
     PendingReply reply;
-    std::variant<Join, Leave, Disconnect, SessionCommand> task;
+    std::variant<Join, Leave, Disconnect, Watch, Unwatch, SessionCommand> task;
   };
 
   enum class Added {

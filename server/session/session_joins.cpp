@@ -1,4 +1,4 @@
-// Joins and departures of participants.
+// Joins and departures of participants and relays.
 
 #include <memory>
 #include <utility>
@@ -29,6 +29,14 @@ void Session::execute_join(PendingReply reply, const SessionInbox::Join& join) {
       answer_join(*waiting, number, resume, resumed);
     });
   });
+}
+
+void Session::watch(std::shared_ptr<ClientOutbox> viewer, const Subscription& wanted) {
+  add({PendingReply(std::move(viewer), {}), SessionInbox::Watch{wanted}});
+}
+
+void Session::unwatch(std::shared_ptr<ClientOutbox> viewer) {
+  add({PendingReply(std::move(viewer), {}), SessionInbox::Unwatch{}});
 }
 
 void Session::store_people_then(std::function<void(const Failure&)> then) {

@@ -340,6 +340,9 @@ std::vector<Setting> cluster_group(ClusterSettings& cluster) {
       text_setting("public_url", cluster.public_url, "URL",
                    "URL at which clients of other nodes reach this node: wss://a.example/ws",
                    check_public_url),
+      word_setting("route", cluster.route, {"redirect", "relay"},
+                   "Clients of sessions on other nodes: this node redirects them, or relays their "
+                   "messages and frames"),
       text_setting("cluster_tls_ca", cluster.tls_ca, "FILE",
                    "Trusted CA certificates of the NATS servers, in PEM"),
       text_setting("cluster_tls_certificate", cluster.tls_certificate, "FILE",

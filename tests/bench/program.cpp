@@ -5,6 +5,7 @@
 #include "server/cli/common/command.h"
 #include "tests/bench/accuracy/accuracy.h"
 #include "tests/bench/cluster/cluster.h"
+#include "tests/bench/cluster/relays.h"
 #include "tests/bench/codec/codec.h"
 #include "tests/bench/compare.h"
 #include "tests/bench/document/document.h"
@@ -48,6 +49,7 @@ int run_command(int argc, char** argv) {
   add_durability_command(app, exit_code);
   add_recovery_command(app, exit_code);
   add_cluster_command(app, exit_code);
+  add_relays_command(app, exit_code);
   add_output_command(app, exit_code);
   add_race_command(app, exit_code);
   add_document_command(app, exit_code);

@@ -25,6 +25,7 @@ class NatsServers {
 
   std::vector<std::string> urls() const;
   std::size_t size() const { return servers_.size(); }
+  int process(std::size_t index) const { return servers_.at(index).pid; }
   /// Sends SIGKILL to a process, and waits for its end.
   void kill(std::size_t index);
   /// Starts a killed process again, with its data.

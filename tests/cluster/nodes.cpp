@@ -11,7 +11,9 @@
 
 namespace vat::test {
 
-Nodes::Nodes(std::size_t count, std::vector<std::string> options) : options_(std::move(options)) {
+Nodes::Nodes(std::size_t count, std::vector<std::string> options,
+             std::map<std::string, std::size_t> threads)
+    : options_(std::move(options)), threads_(std::move(threads)) {
   folder_.write("scenes/pool.json", kPoolScene);
   for (std::size_t i = 0; i < count; ++i) {
     const std::string name(1, static_cast<char>('a' + i));
@@ -21,27 +23,29 @@ Nodes::Nodes(std::size_t count, std::vector<std::string> options) : options_(std
 }
 
 void Nodes::start(const std::string& node) {
+  const auto threads = threads_.find(node);
   std::string servers;
   for (const std::string& url : nats_.urls()) servers += (servers.empty() ? "" : ",") + url;
-  std::vector<std::string> arguments{"serve",
-                                     "--cluster",
-                                     servers,
-                                     "--node",
-                                     node,
-                                     "--public-url",
-                                     url(node),
-                                     "--port",
-                                     std::to_string(nodes_.at(node).port),
-                                     "--data",
-                                     folder_.file(node),
-                                     "--scenes",
-                                     folder_.file("scenes"),
-                                     "--scene",
-                                     "pool",
-                                     "--threads",
-                                     "2",
-                                     "--log-level",
-                                     "warn"};
+  std::vector<std::string> arguments{
+      "serve",
+      "--cluster",
+      servers,
+      "--node",
+      node,
+      "--public-url",
+      url(node),
+      "--port",
+      std::to_string(nodes_.at(node).port),
+      "--data",
+      folder_.file(node),
+      "--scenes",
+      folder_.file("scenes"),
+      "--scene",
+      "pool",
+      "--threads",
+      std::to_string(threads == threads_.end() ? 2 : threads->second),
+      "--log-level",
+      "warn"};
   arguments.insert(arguments.end(), options_.begin(), options_.end());
   nodes_.at(node).process = nullptr;
   nodes_.at(node).process = std::make_unique<script::ServerProcess>(VAT_PROGRAM, arguments);

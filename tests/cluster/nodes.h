@@ -17,7 +17,9 @@ namespace vat::test {
 class Nodes {
  public:
   /// Starts `count` nodes. `options` are further options of each node.
-  explicit Nodes(std::size_t count, std::vector<std::string> options = {});
+  /// `threads` are the numbers of threads of some nodes. The others have two.
+  explicit Nodes(std::size_t count, std::vector<std::string> options = {},
+                 std::map<std::string, std::size_t> threads = {});
 
   NatsServers& nats() { return nats_; }
   /// Starts the node again, after its end.
@@ -56,6 +58,7 @@ class Nodes {
   TemporaryFolder folder_;
   NatsServers nats_{3};
   const std::vector<std::string> options_;
+  const std::map<std::string, std::size_t> threads_;
   std::map<std::string, Node> nodes_;
 };
 

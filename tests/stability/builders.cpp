@@ -7,6 +7,7 @@
 
 #include "core/limits.h"
 #include "core/numerics/step_limits.h"
+#include "core/validation/validate.h"
 
 namespace vat::stability {
 
@@ -86,6 +87,18 @@ Real least_step_limit(const Scene& scene) {
     least = std::min(least, limit.step);
   }
   return least;
+}
+
+std::optional<Scene> with_sub_steps(Scene scene) {
+  scene.numerics.control = StepControl::local;
+  bool has_solid = false;
+  for (BodyDescription& body : scene.bodies) {
+    if (body.kind == BodyKind::liquid) continue;
+    body.sub_steps = 8;
+    has_solid = true;
+  }
+  if (!has_solid || !find_errors(scene).empty()) return {};
+  return scene;
 }
 
 void take_stable_step(Scene& scene, Real part) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,9 @@ const char* material_of(BodyKind kind);
 /// Sets the step to the fraction `part` of its smallest limit, and the tick to about 20 ms. The
 /// limit must be finite and positive.
 void take_stable_step(Scene& scene, Real part);
+/// Returns the scene with local steps, in which each solid takes at least eight sub-steps in each
+/// step of the scene; nothing if the scene has no solid or local steps do not support it.
+std::optional<Scene> with_sub_steps(Scene scene);
 /// Returns the smallest limit of the scene's step; infinite if there is none.
 Real least_step_limit(const Scene& scene);
 

@@ -126,10 +126,12 @@ Real Ledger::mechanical(const Diagnostics& now) {
 }
 
 bool Ledger::closes(const Scene& scene) {
-  return scene.numerics.integrator == IntegratorId::velocity_verlet &&
+  if (scene.numerics.integrator != IntegratorId::velocity_verlet) return false;
+  if (!scene.vat) return true;
+  return scene.numerics.control != StepControl::local &&
          std::ranges::all_of(scene.materials, [&](const Material& material) {
            const InterfaceConstants law = wall_constants(scene, material.name);
-           return !scene.vat || (law.damping == 0 && law.friction == 0 && !law.restitution);
+           return law.damping == 0 && law.friction == 0 && !law.restitution;
          });
 }
 

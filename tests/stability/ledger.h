@@ -14,7 +14,8 @@ class Ledger {
   void add_step(const Simulation& simulation, const Diagnostics& now);
 
   /// Returns whether the momentum balance holds up to round-off. The kicks of velocity Verlet are
-  /// the trapezoidal rule of wall forces without damping and friction.
+  /// the trapezoidal rule of wall forces without damping and friction. With local steps, walls also
+  /// act between the ends of steps.
   static bool closes(const Scene& scene);
 
   /// Returns the maximum of |P - P_0 - impulses|, relative to the sum of the absolute impulses.

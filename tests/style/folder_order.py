@@ -31,7 +31,7 @@ FOLDER_ORDER = (
     "server/support", "server/nats", "server/output/mesh", "server/output", "server/output/alembic", "server/storage/sqlite", "server/storage", "server/access", "server/transport",
     "server/operations", "server/messages", "server/http",
     # the parts of a session
-    "server/clients", "server/frames", "server/recording", "server/people", "server/history", "server/cluster", "server/session/ticks",
+    "server/clients", "server/frames", "server/relay", "server/recording", "server/people", "server/history", "server/cluster", "server/session/ticks",
     "server/session/core", "server/session", "server/replay", "server/directory",
     # the interface of clients
     "server/methods", "server/rpc",

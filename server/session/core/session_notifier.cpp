@@ -6,9 +6,15 @@
 #include "protocol/frame/frame_domain.h"
 #include "protocol/messages/describe.h"
 #include "protocol/scene/level.h"
+#include "server/relay/frame_facts.h"
 #include "server/session/core/playback.h"
 
 namespace vat {
+namespace {
+
+constexpr std::uint16_t kSessionEnded = 1001;
+
+}  // namespace
 
 SessionNotifier::SessionNotifier(const SessionContext& context, const SessionRun& run,
                                  const SessionClock& clock, const SessionHistory& history,
@@ -32,10 +38,57 @@ void SessionNotifier::start_epoch() {
   participants_.start_epoch(run_.epoch());
   recorded_.start_epoch(run_.epoch());  // the viewers, while a recorded command is executed
   frames_->set_default_error(default_max_error(run_.simulation()));
+  for (const auto& [id, watcher] : watchers_) tell_facts(*watcher.outbox, watcher.membership);
 }
 
 void SessionNotifier::reset_frames() {
   frames_->set_vat(run_.simulation().scene().vat);
+}
+
+void SessionNotifier::tell_facts(ClientOutbox& viewer, std::uint64_t membership) {
+  const Simulation& simulation = run_.simulation();
+  viewer.start_epoch(membership, run_.epoch());
+  viewer.send(write_frame_facts({simulation.scene().vat, default_max_error(simulation)}).dump());
+}
+
+void SessionNotifier::watch(const std::shared_ptr<ClientOutbox>& viewer, const Subscription& wanted,
+                            SteadyClock::time_point now) {
+  VAT_CHECK(context_.owner.allows_this_thread());
+  const auto [entry, is_new] = watchers_.try_emplace(viewer->id());
+  Watcher& watcher = entry->second;
+  if (is_new) {
+    watcher = {viewer, viewer->join(), {}};
+    tell_facts(*viewer, watcher.membership);
+  }
+  watcher.wanted = wanted;
+  frames_->add(viewer, viewer->subscribe(watcher.membership, frames_, now), wanted);
+  frame_due_ = true;
+}
+
+void SessionNotifier::unwatch(ConnectionId viewer) {
+  if (watchers_.erase(viewer) > 0) frames_->remove(viewer);
+}
+
+void SessionNotifier::end_watchers() {
+  for (const auto& [id, watcher] : watchers_) {
+    watcher.outbox->close(kSessionEnded, "the session has ended here");
+  }
+  watchers_.clear();
+}
+
+bool SessionNotifier::is_watched(std::optional<std::uint64_t> tick) const {
+  if (!watchers_.empty()) return true;
+  return tick ? participants_.is_watched(*tick) : participants_.is_watched();
+}
+
+ByAttribute<bool> SessionNotifier::wanted_attributes() const {
+  ByAttribute<bool> wanted = participants_.wanted_attributes();
+  for (const auto& [id, watcher] : watchers_) {
+    for (std::size_t a = 0; a < kFrameAttributes; ++a) {
+      wanted[a] = wanted[a] || watcher.wanted.attribute_errors[a] > 0;
+    }
+  }
+  return wanted;
 }
 
 void SessionNotifier::subscribe(Participant& participant, const Subscription& subscription,
@@ -61,7 +114,7 @@ void SessionNotifier::unsubscribe(Participant& participant) {
 
 void SessionNotifier::prepare_tick() {
   constexpr auto kAcceleration = static_cast<std::size_t>(FrameAttribute::acceleration);
-  if (participants_.wanted_attributes()[kAcceleration]) {
+  if (wanted_attributes()[kAcceleration]) {
     publisher_.remember(run_.simulation(), run_.tick_seconds());
   } else {
     publisher_.forget();
@@ -96,7 +149,7 @@ void SessionNotifier::tell_divergence() {
 void SessionNotifier::publish_tick() {
   VAT_CHECK(context_.owner.allows_this_thread());
   tell_description();  // a tick may start an epoch
-  if (frame_due_ || tick_frame_due_ || participants_.is_watched(run_.tick())) publish_frame();
+  if (frame_due_ || tick_frame_due_ || is_watched(run_.tick())) publish_frame();
 }
 
 void SessionNotifier::announce() {
@@ -124,13 +177,13 @@ void SessionNotifier::tell_presence(SteadyClock::time_point now) {
 
 void SessionNotifier::publish_frame() {
   frame_due_ = tick_frame_due_ = false;
-  if (!participants_.is_watched()) return;
+  if (!is_watched({})) return;
   fill_state();
   frames_->publish(state_);
 }
 
 void SessionNotifier::fill_state() {
-  publisher_.publish(run_.simulation(), participants_.wanted_attributes(), state_);
+  publisher_.publish(run_.simulation(), wanted_attributes(), state_);
   FrameHeader& header = state_.header;
   header.playing = clock_.playing();
   header.slow = clock_.is_slow();

@@ -2,7 +2,9 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "server/frames/frame_feed.h"
@@ -41,6 +43,13 @@ class SessionNotifier {
                  SteadyClock::time_point now);
   void unsubscribe(Participant& participant);
   void remove_viewer(ConnectionId client) { frames_->remove(client); }
+  /// Sends frames to a viewer who is no participant, for the relay of another node. Facts about the
+  /// frames precede the first frame of each epoch. The second call for a viewer changes the frames.
+  void watch(const std::shared_ptr<ClientOutbox>& viewer, const Subscription& wanted,
+             SteadyClock::time_point now);
+  void unwatch(ConnectionId viewer);
+  /// Closes the connections of all viewers of watch().
+  void end_watchers();
 
   /// Stores the velocities before a tick if a client has requested accelerations.
   void prepare_tick();
@@ -75,6 +84,9 @@ class SessionNotifier {
   void publish_frame();
   void fill_state();
   void list_people();
+  bool is_watched(std::optional<std::uint64_t> tick) const;
+  ByAttribute<bool> wanted_attributes() const;
+  void tell_facts(ClientOutbox& viewer, std::uint64_t membership);
 
   const SessionContext& context_;
   const SessionRun& run_;
@@ -85,6 +97,12 @@ class SessionNotifier {
   const std::shared_ptr<FrameFeed> frames_;
   StatePublisher publisher_;
   PublishedState state_;  // next state, or memory of an older state
+  struct Watcher {
+    std::shared_ptr<ClientOutbox> outbox;
+    std::uint64_t membership = 0;
+    Subscription wanted;
+  };
+  std::map<ConnectionId, Watcher> watchers_;
   Presence presence_;
   std::shared_ptr<const std::vector<PersonSummary>> people_;  // list at the time of people_changes_
   std::uint64_t people_changes_ = 0;

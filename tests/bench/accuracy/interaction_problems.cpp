@@ -73,8 +73,69 @@ Scene make_tait_pool() {
   return scene;
 }
 
-Problem pool_problem(Scene scene, TaskRunner* runner) {
-  Problem problem{.title = "Stiff jelly that falls into a pool",
+/// A soft ball of 19 particles sinks into cold honey. It needs no shorter steps than the honey.
+Scene make_honey_pool() {
+  Scene scene = make_tait_pool();
+  scene.materials[0] = test::make_liquid("water", 1400, {64, 600, 2.5 * kPoolSpacing});
+  BodyDescription& ball = scene.bodies[1];
+  ball.name = "ball";
+  std::erase_if(std::get<ParticleShape>(ball.shape).positions,
+                [](const Vec3& x) { return x.norm() > 1.5 * kPoolSpacing; });
+  const std::vector<Vec3> points = std::get<ParticleShape>(ball.shape).positions;
+  ball.shape = test::make_particles(points, 0.2);
+  ball.springs = test::join_near(points, 1.5 * kPoolSpacing, {1000, 1});
+  return scene;
+}
+
+/// Twenty boats of four particles drift on a pool of 720, and collide. Their hulls need steps of a
+/// third of a millisecond, but only while they touch.
+Scene make_boats() {
+  Scene scene = make_tait_pool();
+  scene.materials[1] = test::make_material("steel");
+  scene.default_interface = {1e6, 10};
+  scene.vat = Vat{Vec3(-0.5, -0.3, -0.075), Vec3(0.5, 0.3, 0.6), false, {}};
+  scene.bodies = {test::make_body(
+      "pool", BodyKind::liquid, "water",
+      test::make_particles(test::make_lattice(20, 12, 3, kPoolSpacing), 0.125), kPoolSpacing / 2)};
+  const ParticleShape hull =
+      test::make_particles(test::make_lattice(2, 2, 1, kPoolSpacing), 0.0625);
+  for (int n = 0; n < 20; ++n) {
+    BodyDescription boat = test::make_body("boat " + std::to_string(n), BodyKind::rigid, "steel",
+                                           hull, kPoolSpacing / 2);
+    boat.position = {0.19 * (n % 5 - 2), 0.14 * (n / 5 - 1.5), 0.11};
+    boat.velocity = {0.1, n / 5 % 2 == 0 ? 0.5 : -0.5, 0};
+    scene.bodies.push_back(std::move(boat));
+  }
+  return scene;
+}
+
+/// A rope of 40 light particles holds a weight of 500 times their mass, and falls from the
+/// horizontal. Each particle of the rope needs short steps, and the weight is joined to one.
+Problem rope(TaskRunner* runner) {
+  Scene scene = test::make_scene(IntegratorId::velocity_verlet, 1e-4);
+  scene.gravity = {0, 0, -9.81};
+  scene.materials = {test::make_material("rope")};
+  std::vector<Vec3> points;
+  for (int n = 0; n <= 40; ++n) points.emplace_back(kPoolSpacing * n, 0, 0);
+  ParticleShape shape = test::make_particles(points, 0.02);
+  shape.masses.back() = 10;
+  shape.fixed = {0};
+  scene.bodies = {test::make_body("rope", BodyKind::deformable, "rope", std::move(shape), 0.01)};
+  scene.bodies[0].springs = test::join_near(points, 1.5 * kPoolSpacing, {2e4, 0.1});
+  Problem problem{.title = "Rope with a heavy end",
+                  .error_name = "places against a fine run, in ways from the start",
+                  .scene = std::move(scene),
+                  .end = 0.4,
+                  .step_counts = doubled(400, 5),
+                  .longest_step_count = 50,
+                  .longest_step_growth = 2,
+                  .error = {}};
+  problem.error = error_against_fine_run(problem, 1, runner);
+  return problem;
+}
+
+Problem pool_problem(const char* title, Scene scene, TaskRunner* runner) {
+  Problem problem{.title = title,
                   .error_name = "places against a fine run, in ways from the start",
                   .scene = std::move(scene),
                   .end = 0.1,
@@ -91,8 +152,27 @@ Problem pool_problem(Scene scene, TaskRunner* runner) {
 std::vector<ProblemEntry> interaction_problems() {
   return {{"INT-6", push},
           {"INT-impact", impact},
-          {"pool", [](TaskRunner* runner) { return pool_problem(make_pool(), runner); }, true},
-          {"tait-pool", [](TaskRunner* runner) { return pool_problem(make_tait_pool(), runner); },
+          {"rope", rope},
+          {"pool",
+           [](TaskRunner* runner) {
+             return pool_problem("Stiff jelly that falls into a pool", make_pool(), runner);
+           },
+           true},
+          {"tait-pool",
+           [](TaskRunner* runner) {
+             return pool_problem("Stiff jelly that falls into a weakly compressible pool",
+                                 make_tait_pool(), runner);
+           },
+           true},
+          {"honey-pool",
+           [](TaskRunner* runner) {
+             return pool_problem("Soft ball in honey", make_honey_pool(), runner);
+           },
+           true},
+          {"boats",
+           [](TaskRunner* runner) {
+             return pool_problem("Twenty boats that collide", make_boats(), runner);
+           },
            true}};
 }
 

@@ -72,29 +72,43 @@ std::vector<std::unique_ptr<LoadProcess>> start_load(const LoadSettings& setting
   return load;
 }
 
-void append(std::vector<float>& all, const std::vector<float>& more) {
+void append_values(std::vector<float>& all, const std::vector<float>& more) {
   all.insert(all.end(), more.begin(), more.end());
 }
 
 LoadSightings end_load(const std::vector<std::unique_ptr<LoadProcess>>& load) {
   LoadSightings all;
-  for (const auto& process : load) {
-    const LoadSightings seen = process->end();
-    for (std::size_t kind = 0; kind < kViewerKinds; ++kind) {
-      all[kind].frames += seen[kind].frames;
-      all[kind].bytes += seen[kind].bytes;
-      all[kind].joins += seen[kind].joins;
-      all[kind].closed += seen[kind].closed;
-      append(all[kind].ages, seen[kind].ages);
-      append(all[kind].first_frames, seen[kind].first_frames);
-    }
-  }
+  for (const auto& process : load) append(all, process->end());
   return all;
 }
 
 double metric(const std::map<std::string, double>& metrics, const std::string& name) {
   const auto found = metrics.find(name);
   return found == metrics.end() ? FanoutResult::kAbsent : found->second;
+}
+
+double count_ticks(const Served& server) {
+  return metric(server.metrics(), "vat_tick_duration_seconds_count");
+}
+
+void read_ticks(const Served& server, FanoutResult& result) {
+  const auto metrics = server.metrics();
+  result.tick_median = metric(metrics, "vat_recent_tick_seconds{quantile=\"0.5\"}");
+  result.tick_99 = metric(metrics, "vat_recent_tick_seconds{quantile=\"0.99\"}");
+  result.lateness_99 = metric(metrics, "vat_recent_tick_lateness_seconds{quantile=\"0.99\"}");
+}
+
+}  // namespace
+
+void append(LoadSightings& all, const LoadSightings& more) {
+  for (std::size_t kind = 0; kind < kViewerKinds; ++kind) {
+    all[kind].frames += more[kind].frames;
+    all[kind].bytes += more[kind].bytes;
+    all[kind].joins += more[kind].joins;
+    all[kind].closed += more[kind].closed;
+    append_values(all[kind].ages, more[kind].ages);
+    append_values(all[kind].first_frames, more[kind].first_frames);
+  }
 }
 
 FanoutResult summarise(const Sightings& seen, std::size_t viewers, double seconds) {
@@ -112,19 +126,6 @@ FanoutResult summarise(const Sightings& seen, std::size_t viewers, double second
   result.closed = seen.closed;
   return result;
 }
-
-double count_ticks(const Served& server) {
-  return metric(server.metrics(), "vat_tick_duration_seconds_count");
-}
-
-void read_ticks(const Served& server, FanoutResult& result) {
-  const auto metrics = server.metrics();
-  result.tick_median = metric(metrics, "vat_recent_tick_seconds{quantile=\"0.5\"}");
-  result.tick_99 = metric(metrics, "vat_recent_tick_seconds{quantile=\"0.99\"}");
-  result.lateness_99 = metric(metrics, "vat_recent_tick_lateness_seconds{quantile=\"0.99\"}");
-}
-
-}  // namespace
 
 double measure_frame(LoadSettings settings) {
   LoadProcess one(settings, {1, 0, 0, 0}, 1);

@@ -56,6 +56,11 @@ inline constexpr double kFullRate = 30;
 /// Returns the bytes per frame, from one second with one viewer.
 double measure_frame(LoadSettings settings);
 
+/// Adds the measurements of other viewers.
+void append(LoadSightings& all, const LoadSightings& more);
+/// Returns the results of viewers of one kind that were measured for `seconds`.
+FanoutResult summarise(const Sightings& seen, std::size_t viewers, double seconds);
+
 /// Runs a case. Returns a row for each kind of viewer. Throws std::runtime_error if the server or
 /// the viewers fail.
 std::vector<FanoutResult> run_fanout(const FanoutCase& one, const FanoutSettings& settings);

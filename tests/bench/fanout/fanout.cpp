@@ -16,19 +16,10 @@
 #include "tests/bench/speed/machine.h"
 
 namespace vat::bench {
-namespace {
-
-struct FanoutOptions {
-  Options common;
-  std::string program = VAT_PROGRAM;
-  double max_error = 0;
-};
-
-constexpr std::size_t kOtherFiles = 64;  // open files of a load process besides its sockets
 
 /// Water in a vat that moves back and forth, with few long steps: 30 ticks per second, each of
 /// which moves every particle.
-constexpr const char* kScene = R"({
+const char* const kFanoutScene = R"({
   "format": "vat.scene/1", "name": "fanout", "title": "Sloshing",
   "materials": [{"name": "water", "density": 1000,
     "liquid": {"stiffness": 400, "viscosity": 0.1, "support_radius": 0.17,
@@ -39,6 +30,16 @@ constexpr const char* kScene = R"({
                "tick": 0.03333333333333333},
   "bodies": [{"name": "water", "kind": "liquid", "material": "water", "spacing": 0.085,
     "shape": {"type": "box", "center": [1.1, 1, 0.8], "size": [2.2, 2, 1.5]}}]})";
+
+namespace {
+
+struct FanoutOptions {
+  Options common;
+  std::string program = VAT_PROGRAM;
+  double max_error = 0;
+};
+
+constexpr std::size_t kOtherFiles = 64;  // open files of a load process besides its sockets
 
 /// A rigid block at rest, whose description has about 1.4 MB.
 constexpr const char* kSolidsScene = R"({
@@ -146,7 +147,7 @@ int run_cases(const std::vector<std::size_t>& chosen, const FanoutOptions& optio
   const std::filesystem::path folder = options.common.output;
   std::filesystem::create_directories(folder);
   settings.scene = (folder / "scene.json").string();
-  if (const Status written = write_text(settings.scene, kScene); !written) {
+  if (const Status written = write_text(settings.scene, kFanoutScene); !written) {
     return fail(settings.scene, written.errors());
   }
   settings.solids_scene = (folder / "solids.json").string();

@@ -111,8 +111,12 @@ Served::~Served() {
   close(output_);
 }
 
+double processor_seconds_of(int process) {
+  return read_served_times("/proc/" + std::to_string(process)).seconds;
+}
+
 double Served::processor_seconds() const {
-  return read_served_times("/proc/" + std::to_string(process_)).seconds;
+  return processor_seconds_of(process_);
 }
 
 double Served::delivery_seconds() const {

@@ -15,6 +15,9 @@ struct TickTimes {
   double lateness = 0;  ///< [s]
 };
 
+/// Returns the processor time of a process since its start [s].
+double processor_seconds_of(int process);
+
 /// A running `vat serve`, with figures of the system and of its metrics.
 class Served {
  public:

@@ -5,6 +5,7 @@
 #include "core/threads/thread_pool.h"
 #include "tests/bench/stability/stability_parts.h"
 #include "tests/stability/adversarial/adversarial.h"
+#include "tests/stability/builders.h"
 #include "tests/stability/closed_pairs.h"
 #include "tests/stability/long_run.h"
 #include "tests/stability/random/properties.h"
@@ -43,8 +44,10 @@ void count_outcome(const stability::Outcome& outcome, StabilityCount& count) {
 
 Result<StabilityCount> run_adversarial_part(const Options& options) {
   std::vector<stability::AdversarialCase> cases = stability::adversarial_cases();
+  const auto divided = stability::with_sub_steps(cases);
+  cases.insert(cases.end(), divided.begin(), divided.end());
   if (!options.quick) {
-    const auto others = stability::with_other_integrators(cases);
+    const auto others = stability::with_other_integrators(stability::adversarial_cases());
     cases.insert(cases.end(), others.begin(), others.end());
     const auto large = stability::large_adversarial_cases();
     cases.insert(cases.end(), large.begin(), large.end());
@@ -88,14 +91,21 @@ Status report_fault(const Scene& scene, const std::string& fault, const Options&
 }  // namespace
 
 Result<StabilityCount> run_random_part(const Options& options) {
-  const std::uint64_t scenes = options.quick ? 30 : 500;
+  const std::uint64_t seeds = options.quick ? 30 : 500;
+  std::vector<Scene> scenes;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    scenes.push_back(stability::random_scene(seed));
+    std::optional<Scene> divided = stability::with_sub_steps(scenes.back());
+    if (!divided) continue;
+    divided->name += "-sub-steps";
+    scenes.push_back(*std::move(divided));
+  }
   StabilityCount count;
   Table table{{"scene", "bodies", "particles", "integrator", "step [s]", "attempts", "guard events",
                "momentum error", "momentum bound", "momentum closes", "energy excess",
                "energy bound", "contact energy at the snapshot [J]", "hash", "fault"},
               {}};
-  for (std::uint64_t seed = 1; seed <= scenes; ++seed) {
-    const Scene scene = stability::random_scene(seed);
+  for (const Scene& scene : scenes) {
     const stability::PropertyReport report = check_random(scene, options.quick);
     ++count.scenes;
     count.events += report.undone;

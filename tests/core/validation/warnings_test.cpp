@@ -119,6 +119,14 @@ TEST(Warnings, OfATolerance) {
   EXPECT_EQ(warnings_of(scene), "no_effect /numerics/tolerance");
 }
 
+TEST(Warnings, OfSubSteps) {
+  Scene scene = oscillator(1, 0);
+  scene.bodies[0].sub_steps = 4;
+  EXPECT_EQ(warnings_of(scene), "no_effect /bodies/0/sub_steps");
+  scene.numerics.control = StepControl::local;
+  EXPECT_EQ(warnings_of(scene), "");
+}
+
 TEST(Warnings, OfSettingsWithoutEffect) {
   Scene scene = two_balls(0.3);
   scene.vat = Vat{{-1, -1, -1}, {2, 1, 1}, true, {}, {}};

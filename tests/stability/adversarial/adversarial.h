@@ -62,5 +62,8 @@ std::vector<AdversarialCase> large_adversarial_cases();
 /// Returns the cases with each of the other integrators, for groups whose steps these integrators
 /// support.
 std::vector<AdversarialCase> with_other_integrators(const std::vector<AdversarialCase>& cases);
+/// Returns the cases in which solids take sub-steps, for all scenes that local steps support. The
+/// same conditions must hold.
+std::vector<AdversarialCase> with_sub_steps(const std::vector<AdversarialCase>& cases);
 
 }  // namespace vat::stability

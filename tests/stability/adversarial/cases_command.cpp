@@ -194,4 +194,17 @@ std::vector<AdversarialCase> with_other_integrators(const std::vector<Adversaria
   return result;
 }
 
+std::vector<AdversarialCase> with_sub_steps(const std::vector<AdversarialCase>& cases) {
+  std::vector<AdversarialCase> result;
+  for (const AdversarialCase& original : cases) {
+    if (original.expected == Expected::refusal) continue;
+    std::optional<Scene> scene = with_sub_steps(original.scene);
+    if (!scene) continue;
+    result.push_back(original);
+    result.back().name += ", sub-steps";
+    result.back().scene = *std::move(scene);
+  }
+  return result;
+}
+
 }  // namespace vat::stability

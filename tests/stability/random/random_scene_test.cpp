@@ -34,22 +34,40 @@ TEST(RandomScenes, AreValidAndTheSameForTheSameSeed) {
   EXPECT_EQ(kinds.size(), 3U);
 }
 
+PropertyReport expect_properties(const Scene& scene) {
+  PropertyReport report = check(scene);
+  if (!report.fault.empty()) {
+    const Scene least = shrink(
+        scene, [](const Scene& s) { return !check(s).fault.empty(); }, 50);
+    ADD_FAILURE() << scene.name << ": " << report.fault
+                  << "\nthe smallest scene found: " << write_scene(least).dump();
+  }
+  return report;
+}
+
 TEST(RandomScenes, KeepTheirProperties) {
   std::size_t with_contacts = 0;
   std::size_t with_budget = 0;
   for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
-    const Scene scene = random_scene(seed);
-    const PropertyReport report = check(scene);
+    const PropertyReport report = expect_properties(random_scene(seed));
     with_contacts += report.contact_energy > 0 ? 1 : 0;
     with_budget += report.has_momentum_budget ? 1 : 0;
-    if (report.fault.empty()) continue;
-    const Scene least = shrink(
-        scene, [](const Scene& s) { return !check(s).fault.empty(); }, 50);
-    ADD_FAILURE() << "seed " << seed << ": " << report.fault
-                  << "\nthe smallest scene found: " << write_scene(least).dump();
   }
   EXPECT_GT(with_contacts, kScenes / 2);
   EXPECT_GT(with_budget, kScenes / 5);
+}
+
+TEST(RandomScenes, KeepTheirPropertiesWithSubSteps) {
+  std::size_t with_contacts = 0;
+  std::size_t supported = 0;
+  for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
+    const std::optional<Scene> scene = with_sub_steps(random_scene(seed));
+    if (!scene) continue;
+    ++supported;
+    with_contacts += expect_properties(*scene).contact_energy > 0 ? 1 : 0;
+  }
+  EXPECT_GT(supported, kScenes / 3);
+  EXPECT_GT(with_contacts, supported / 2);
 }
 
 // A scene fails as long as it has a rigid body that moves.
