@@ -63,7 +63,7 @@ std::vector<AdversarialCase> large_adversarial_cases();
 /// support.
 std::vector<AdversarialCase> with_other_integrators(const std::vector<AdversarialCase>& cases);
 /// Returns the cases in which solids take sub-steps, for all scenes that local steps support. The
-/// same conditions must hold.
+/// same conditions must hold, without `judge`.
 std::vector<AdversarialCase> with_sub_steps(const std::vector<AdversarialCase>& cases);
 
 }  // namespace vat::stability

@@ -203,6 +203,7 @@ std::vector<AdversarialCase> with_sub_steps(const std::vector<AdversarialCase>& 
     result.push_back(original);
     result.back().name += ", sub-steps";
     result.back().scene = *std::move(scene);
+    result.back().judge = {};  // compares with fixed steps
   }
   return result;
 }
