@@ -121,6 +121,16 @@ std::uint64_t ClientOutbox::join() {
 
 void ClientOutbox::leave() {
   const std::lock_guard lock(mutex_);
+  end_membership();
+}
+
+void ClientOutbox::leave(std::uint64_t membership) {
+  const std::lock_guard lock(mutex_);
+  if (membership == membership_) end_membership();
+}
+
+void ClientOutbox::end_membership() {
+  VAT_CHECK(mutex_.is_held());
   membership_ += membership_ % 2;
   role_ = Role::none;
   is_subscribed_ = false;

@@ -122,6 +122,8 @@ class ClientOutbox {
   /// counted.
   std::uint64_t join();
   void leave();
+  /// As leave(), unless another membership has started.
+  void leave(std::uint64_t membership);
   /// Sets the role in the session. The role is Role::none until the session has admitted the
   /// client.
   void set_role(std::uint64_t membership, Role role);
@@ -163,6 +165,7 @@ class ClientOutbox {
 
  private:
   // The caller must hold the mutex for these functions.
+  void end_membership();
   void send_control(std::string head, SharedText tail);
   bool is_gate_closed() const;
   void close_as_too_slow(std::string_view reason);

@@ -54,6 +54,7 @@ ClusterNode::ClusterNode(ClusterSettings settings, Storage& storage, Clock& cloc
       version_(version),
       instance_(make_token()),
       connection_(nats_settings(settings_)),
+      relay_connection_(nats_settings(settings_)),
       lease_(clock),
       streams_(connection_),
       node_bucket_(connection_, "vat-nodes", Lease::kOthersTime),
@@ -203,6 +204,7 @@ void ClusterNode::stop() {
   } catch (const NatsError& error) {
     log_warning("the node does not leave the cluster's list: {}", error.what());
   }
+  relay_connection_.close();
   connection_.close();
 }
 

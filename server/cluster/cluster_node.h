@@ -55,7 +55,8 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   /// Returns a text that differs from that of all other runs of a node.
   const std::string& instance() const { return instance_; }
   const std::string& public_url() const { return settings_.public_url; }
-  NatsConnection& connection() { return connection_; }
+  /// Returns a separate connection for relays, so that frames do not delay leases and logs.
+  NatsConnection& relay_connection() { return relay_connection_; }
   /// Returns whether a node takes new clients, because it does not stop.
   bool accepts(const std::string& node) const {
     const auto found = nodes_.find(node);
@@ -150,6 +151,7 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   boost::asio::thread_pool timer_thread_{1};
   boost::asio::thread_pool threads_{4};  // for work that waits
   NatsConnection connection_;
+  NatsConnection relay_connection_;
   Lease lease_;
   ClusterStreams streams_;
   Bucket node_bucket_;

@@ -78,13 +78,14 @@ std::size_t ClientRegistry::bound_queues(std::size_t maximum) const {
   return closed;
 }
 
-void ClientRegistry::close_session(SessionNumber session, const std::string& event) {
+void ClientRegistry::close_session(SessionNumber session, const std::string& event,
+                                   const std::string& relayed_event) {
   VAT_CHECK(mutex_.is_held());
   for (auto& [connection, client] : clients_) {
     if (client.session != session) continue;
     client.session = 0;
     client.outbox->leave();
-    client.outbox->send(event);  // the last event of the session
+    client.outbox->send(client.is_relayed ? relayed_event : event);  // the last of the session
   }
   VAT_CHECK(count_in(session) == 0);
 }

@@ -15,7 +15,7 @@
 namespace vat {
 
 /// Signed token of a connection, whose validity is not known yet: the owner of its session decides.
-/// The connection may only be redirected to the owner.
+/// The connection may only be redirected or relayed to the owner.
 struct UncheckedToken {
   std::string token;
   TokenHash hash{};
@@ -33,8 +33,10 @@ struct Client {
   std::vector<std::function<void(std::optional<RpcError>)>> checks;
   std::size_t wrong_tokens = 0;
   std::shared_ptr<RelayedClient> relay;  ///< null, or the session is on another node
-  /// Tickets of the sessions on other nodes that the client has created.
+  bool is_relayed = false;               ///< another node relays the client
+  /// Tickets of the sessions on other nodes that the client has created, until they are used.
   std::map<SessionId, std::string> tickets;
+  std::map<SessionId, Grant> relay_access;  ///< access that owners granted for tickets
 };
 
 /// Connections of a server. The caller must hold the directory's lock.
@@ -60,8 +62,10 @@ class ClientRegistry {
   /// If the queues of all clients have more than `maximum` bytes, closes the clients with the
   /// greatest shares. Returns their number.
   std::size_t bound_queues(std::size_t maximum) const;
-  /// Ends the membership of all clients of the session, and sends `event` to them.
-  void close_session(SessionNumber session, const std::string& event);
+  /// Ends the membership of all clients of the session, and sends `event` to them, or
+  /// `relayed_event` to the clients of other nodes.
+  void close_session(SessionNumber session, const std::string& event,
+                     const std::string& relayed_event);
 
  private:
   const OwnedMutex& mutex_;

@@ -43,7 +43,7 @@ std::unique_ptr<RelayDoor> make_relay_door(const ServerSettings& settings, Clust
   if (cluster == nullptr || !settings.cluster.is_relay()) return nullptr;
   return std::make_unique<RelayDoor>(
       RelayDoor::Place{cluster->name(), cluster->instance(), cluster->public_url()},
-      cluster->connection(), metrics, frame_threads, clock);
+      cluster->relay_connection(), metrics, frame_threads, clock);
 }
 
 }  // namespace

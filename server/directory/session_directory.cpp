@@ -47,6 +47,7 @@ bool SessionDirectory::connect(std::shared_ptr<Connection> connection,
   outbox->set_read_budget(client_read_budget(limits, resources_.clock.now()));
   Client& client = tables_.clients.add(std::move(outbox));
   access_.start(client);
+  client.is_relayed = access.has_value();
   if (access) client.access = *access;
   return true;
 }

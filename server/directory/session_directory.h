@@ -38,8 +38,8 @@ class SessionDirectory : private ClusterHost {
   AccessControl& access() { return access_; }
   ReplayOpener& replays() { return replays_; }
 
-  /// Adds a connection. Returns false if the connection is refused. `access` is that of a client of
-  /// another node; absent: the client has to show a token, if access requires one.
+  /// Adds a connection. Returns false if the connection is refused. If another node relays the
+  /// client, `access` is the access that the client has there.
   bool connect(std::shared_ptr<Connection> connection, const std::optional<Grant>& access = {});
   void disconnect(ConnectionId id);
   struct Sender {
@@ -149,6 +149,10 @@ class SessionDirectory : private ClusterHost {
   /// Returns whether the owner of a session may accept a client. It may be stopping, or may have
   /// the session no longer.
   bool can_relay(const LocatedSession& session) const;
+  /// Returns the owner of a session of the cluster, or nothing if there is no such session. An
+  /// owner without a lease has no name.
+  std::optional<RelayDoor::Owner> present_owner(const SessionId& id) const;
+  void note_granted(ConnectionId id, const SessionId& session, const Grant& grant);
   /// Joins a session of another node, which serves the client through this node.
   void join_by_relay(Client& client, PendingReply& reply, const LocatedSession& session,
                      const JoinRequest& request);

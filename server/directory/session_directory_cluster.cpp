@@ -42,8 +42,9 @@ void SessionDirectory::start_taken(const StoredSession& session) {
 
 void SessionDirectory::tell_moved(SessionNumber number, const std::string& url) {
   VAT_CHECK(tables_.mutex.is_held());
-  tables_.clients.close_session(
-      number, write_event("session.moved", {{"session", to_id(number)}, {"url", url}}));
+  const std::string moved =
+      write_event("session.moved", {{"session", to_id(number)}, {"url", url}});
+  tables_.clients.close_session(number, moved, moved);
 }
 
 void SessionDirectory::end_lost(std::uint64_t session, const std::string& url) {
@@ -147,7 +148,8 @@ std::optional<RpcError> SessionDirectory::join_elsewhere(PendingReply& reply,
   if (auto error = admission_.refuse_access(*client, located->number)) return error;
   if (located->owner != resources_.cluster->name()) {
     const auto url = resources_.cluster->url_of(*located);
-    if (url && resources_.relay == nullptr) return moved_to(to_id(located->number), *url);
+    const bool relays = resources_.relay != nullptr && !client->is_relayed;
+    if (url && !relays) return moved_to(to_id(located->number), *url);
     if (url && can_relay(*located)) {
       join_by_relay(*client, reply, *located, request);
       return {};
@@ -167,16 +169,37 @@ void SessionDirectory::join_by_relay(Client& client, PendingReply& reply,
   VAT_CHECK(tables_.mutex.is_held());
   const SessionId id = to_id(session.number);
   leave_session(client, PendingReply(client.outbox, {}));
-  const Grant& grant = client.unchecked ? client.unchecked->before : client.access;
+  RelayedClient::Entry entry;
+  entry.access = client.unchecked ? client.unchecked->before : client.access;
+  entry.is_open = resources_.settings.access.mode == AccessMode::open;
   const auto ticket = client.tickets.find(id);
-  std::string token = client.unchecked ? client.unchecked->token : "";
-  if (ticket != client.tickets.end()) token = ticket->second;
+  const auto granted = client.relay_access.find(id);
+  if (granted != client.relay_access.end()) {
+    entry.access = granted->second;
+  } else if (request.resume && client.unchecked) {
+    entry.token = *request.resume;  // does not count as a use
+  } else if (ticket != client.tickets.end()) {
+    entry.token = ticket->second;
+  } else if (client.unchecked) {
+    entry.token = client.unchecked->token;
+  }
+  entry.granted = [this, id, connection = client.outbox->id()](const Grant& grant) {
+    note_granted(connection, id, grant);
+  };
   Json params{{"session", id}};
   if (!request.name.empty()) params["name"] = request.name;
   if (request.resume) params["resume"] = *request.resume;
   if (request.greatest_role) params["role"] = to_string(*request.greatest_role);
-  client.relay = resources_.relay->open(client.outbox, id, session.owner, session.epoch);
-  client.relay->join(std::move(reply), grant, token, params);
+  client.relay = resources_.relay->open(client.outbox, id, {session.owner, session.epoch});
+  client.relay->join(std::move(reply), std::move(entry), params);
+}
+
+void SessionDirectory::note_granted(ConnectionId id, const SessionId& session, const Grant& grant) {
+  const std::lock_guard lock(tables_.mutex);
+  Client* const client = tables_.clients.find(id);
+  if (client == nullptr) return;
+  client->tickets.erase(session);
+  client->relay_access[session] = grant;
 }
 
 void SessionDirectory::keep_ticket(ConnectionId creator, const RpcResult& created) {
@@ -192,7 +215,6 @@ bool SessionDirectory::watch(const std::shared_ptr<ClientOutbox>& viewer, const 
   const std::lock_guard lock(tables_.mutex);
   const auto* found = tables_.sessions.find(id);
   if (found == nullptr) return false;
-  viewer->set_gate(*resources_.cluster);
   found->second->watch(viewer, wanted);
   return true;
 }
@@ -203,11 +225,18 @@ void SessionDirectory::unwatch(const SessionId& id, std::shared_ptr<ClientOutbox
   if (found != nullptr) found->second->unwatch(std::move(viewer));
 }
 
+std::optional<RelayDoor::Owner> SessionDirectory::present_owner(const SessionId& id) const {
+  const auto located = find_elsewhere(id);
+  if (!located) return {};
+  const bool is_present = resources_.cluster->is_present(located->owner);
+  return RelayDoor::Owner{is_present ? located->owner : "", located->epoch};
+}
+
 void SessionDirectory::cluster_changed() {
   if (cluster_change_) cluster_change_();
   if (resources_.relay != nullptr) {
-    resources_.relay->end_silent(
-        [this](const std::string& node) { return resources_.cluster->is_present(node); });
+    resources_.relay->look([this](const SessionId& id) { return present_owner(id); },
+                           resources_.settings.limits.frame_patience);
   }
   std::vector<WaitingJoin> waiting;
   {

@@ -97,8 +97,10 @@ void SessionDirectory::close_session(SessionNumber number, Session::End end,
                                      const std::string& reason, std::optional<PendingReply> reply) {
   VAT_CHECK(tables_.mutex.is_held());
   const SessionId id = to_id(number);
-  tables_.clients.close_session(
-      number, write_event("session.closed", {{"session", id}, {"reason", reason}}));
+  const std::string closed = write_event("session.closed", {{"session", id}, {"reason", reason}});
+  // Direct clients resume after the end of their connection, which relayed clients keep.
+  const std::string moved = write_event("session.moved", {{"session", id}, {"url", ""}});
+  tables_.clients.close_session(number, closed, end == Session::End::resumable ? moved : closed);
   tables_.sessions.at(number).close(end, std::move(reply));
   if (resources_.saved_in_memory) resources_.saved_in_memory->states.remove_session(id);
   remove_tokens(id, end);

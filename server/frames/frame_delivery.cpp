@@ -132,8 +132,9 @@ void FrameDelivery::gather(Viewer& viewer, SteadyClock::time_point now, Groups& 
     return;
   }
   GroupKey key;
-  key.cut =
-      FrameCut(viewer.subscribed, default_error_, viewer.pace.coarseness(), viewer.pace.detail());
+  const bool is_exact = viewer.subscribed.keeps_precision;
+  key.cut = FrameCut(viewer.subscribed, default_error_, is_exact ? 1 : viewer.pace.coarseness(),
+                     is_exact ? kFullDetail : viewer.pace.detail());
   key.stride = static_cast<std::uint8_t>(viewer.period());
   VAT_CHECK(key.stride == viewer.period());
   key.awaits_any = viewer.awaits_any;

@@ -14,6 +14,8 @@ struct Subscription {
   FrameSelection selection;
   /// Greatest errors of the attributes [m/s], [kg/m^3], [Pa], [m/s^2]; 0: attribute omitted.
   ByAttribute<double> attribute_errors{};
+  /// A slow viewer gets fewer frames, but no coarser ones and no fewer particles.
+  bool keeps_precision = false;
 };
 
 }  // namespace vat

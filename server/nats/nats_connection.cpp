@@ -22,6 +22,7 @@ using NatsClock = std::chrono::steady_clock;
 constexpr std::int64_t kConnectMilliseconds = 2000;
 constexpr std::int64_t kReconnectMilliseconds = 100;
 constexpr std::int64_t kReconnectJitterMilliseconds = 100;
+constexpr std::int64_t kWriteMilliseconds = 1000;
 constexpr std::int64_t kPingMilliseconds = 1000;  // detects a server without a closed socket
 constexpr int kMaxPingsOut = 2;
 // Messages are not stored while there is no connection: their sender decides what to do.
@@ -84,6 +85,7 @@ std::unique_ptr<natsOptions, OptionsDeleter> make_nats_options(const NatsSetting
   set(natsOptions_SetPingInterval(raw, kPingMilliseconds));
   set(natsOptions_SetMaxPingsOut(raw, kMaxPingsOut));
   set(natsOptions_SetSendAsap(raw, true));
+  set(natsOptions_SetWriteDeadline(raw, kWriteMilliseconds));
   if (!settings.tls_ca.empty()) {
     set(natsOptions_LoadCATrustedCertificates(raw, settings.tls_ca.c_str()));
   }

@@ -10,6 +10,11 @@
 #include "server/support/log.h"
 
 namespace vat {
+namespace {
+
+constexpr std::chrono::seconds kLookInterval(1);
+
+}  // namespace
 
 RelayDoor::RelayDoor(Place place, NatsConnection& connection, ServerMetrics& metrics,
                      boost::asio::thread_pool& pool, const Clock& clock)
@@ -17,14 +22,21 @@ RelayDoor::RelayDoor(Place place, NatsConnection& connection, ServerMetrics& met
       connection_(connection),
       metrics_(metrics),
       pool_(pool),
-      clock_(clock),
-      subject_("vat.relay." + place_.node + ".clients") {
+      clock_(clock) {
   subscription_ = connection_.subscribe(
-      subject_, [this](const NatsMessage& message) { receive(message.data); });
+      client_subject(place_.node), [this](const NatsMessage& message) { receive(message.data); });
+}
+
+RelayDoor::~RelayDoor() {
+  for (const auto& client : all_clients()) client->fail();  // clients that wait own themselves
 }
 
 std::string RelayDoor::owner_subject(const std::string& node) {
   return "vat.relay." + node + ".owner";
+}
+
+std::string RelayDoor::client_subject(const std::string& link) {
+  return "vat.relay." + link.substr(0, link.find('.')) + ".clients";
 }
 
 std::string RelayDoor::next_link() {
@@ -33,33 +45,36 @@ std::string RelayDoor::next_link() {
 }
 
 std::shared_ptr<RelayedClient> RelayDoor::open(std::shared_ptr<ClientOutbox> outbox,
-                                               const std::string& session, const std::string& owner,
-                                               std::uint64_t epoch) {
+                                               const std::string& session, const Owner& owner) {
   const std::lock_guard lock(mutex_);
-  std::erase_if(clients_, [](const auto& entry) { return entry.second.expired(); });
   const std::string link = next_link();
   auto client = std::make_shared<RelayedClient>(
-      RelayedClient::Place{session, owner, epoch, place_.url, subject_},
-      std::make_unique<RelayLine>(connection_, owner_subject(owner), link), std::move(outbox),
+      RelayedClient::Place{session, owner.node, owner.epoch, place_.url, client_subject(link)},
+      std::make_unique<RelayLine>(connection_, owner_subject(owner.node), link), std::move(outbox),
       RelayedClient::Links{[this, session, owner] { return feed(session, owner); },
-                           [this, session, epoch] { note_move(session, epoch); }},
+                           [this, session, owner] { note_move(session, owner.epoch); }},
       clock_);
   clients_[link] = client;
   return client;
 }
 
-std::shared_ptr<RelayFeed> RelayDoor::feed(const std::string& session, const std::string& owner) {
+std::shared_ptr<RelayFeed> RelayDoor::feed(const std::string& session, const Owner& owner) {
   const std::lock_guard lock(mutex_);
-  std::erase_if(feeds_, [](const auto& entry) { return entry.second.expired(); });
-  auto known = feeds_[session].lock();
-  if (known != nullptr && known->owner() == owner && !known->has_ended()) return known;
+  Feed& entry = feeds_[session];
+  if (auto known = entry.feed.lock(); known != nullptr && known->place().owner == owner.node &&
+                                      known->place().epoch == owner.epoch) {
+    return known;
+  }
   const std::string link = next_link();
   const std::string subject = "vat.relay." + place_.node + ".feed." + std::to_string(links_opened_);
   auto feed = std::make_shared<RelayFeed>(
-      RelayFeed::Place{session, owner, link, owner_subject(owner), subject}, connection_, metrics_,
-      pool_, clock_);
-  feed->start();
-  feeds_[session] = feed;
+      RelayFeed::Place{session, owner.node, owner.epoch, link, owner_subject(owner.node), subject},
+      connection_, metrics_, pool_, clock_);
+  entry.feed = feed;
+  entry.subscription =
+      connection_.subscribe(subject, [weak = entry.feed](const NatsMessage& message) {
+        if (const auto known = weak.lock()) known->receive(message.data);
+      });
   return feed;
 }
 
@@ -72,10 +87,7 @@ void RelayDoor::note_move(const std::string& session, std::uint64_t epoch) {
 bool RelayDoor::has_moved(const std::string& session, std::uint64_t epoch) {
   const std::lock_guard lock(mutex_);
   const auto found = moved_.find(session);
-  if (found == moved_.end()) return false;
-  if (epoch <= found->second) return true;
-  moved_.erase(found);  // the directory shows the next owner
-  return false;
+  return found != moved_.end() && epoch <= found->second;
 }
 
 void RelayDoor::receive(const std::string& bytes) {
@@ -96,16 +108,47 @@ void RelayDoor::receive(const std::string& bytes) {
   }
 }
 
-void RelayDoor::end_silent(const std::function<bool(const std::string&)>& is_present) {
-  std::vector<std::shared_ptr<RelayedClient>> silent;
+std::vector<std::shared_ptr<RelayedClient>> RelayDoor::all_clients() {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::shared_ptr<RelayedClient>> all;
+  for (const auto& [link, weak] : clients_) {
+    if (auto client = weak.lock()) all.push_back(std::move(client));
+  }
+  return all;
+}
+
+std::vector<std::shared_ptr<RelayFeed>> RelayDoor::all_feeds() {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::shared_ptr<RelayFeed>> all;
+  for (const auto& [session, entry] : feeds_) {
+    if (auto feed = entry.feed.lock()) all.push_back(std::move(feed));
+  }
+  return all;
+}
+
+void RelayDoor::look(const std::function<std::optional<Owner>(const std::string&)>& owner_of,
+                     std::chrono::seconds patience) {
   {
     const std::lock_guard lock(mutex_);
-    for (const auto& [link, weak] : clients_) {
-      auto client = weak.lock();
-      if (client != nullptr && !is_present(client->owner())) silent.push_back(std::move(client));
+    if (clock_.now() - looked_ < kLookInterval) return;
+    looked_ = clock_.now();
+    std::erase_if(clients_, [](const auto& entry) { return entry.second.expired(); });
+    std::erase_if(feeds_, [](const auto& entry) { return entry.second.feed.expired(); });
+    std::erase_if(moved_, [&](const auto& entry) {
+      const auto owner = owner_of(entry.first);
+      return !owner || owner->epoch > entry.second;
+    });
+  }
+  for (const auto& client : all_clients()) {
+    const RelayedClient::Place& place = client->place();
+    const auto owner = owner_of(place.session);
+    if (owner && (owner->node != place.owner || owner->epoch != place.epoch)) {
+      client->fail();
+    } else {
+      client->look();
     }
   }
-  for (const auto& client : silent) client->fail();
+  for (const auto& feed : all_feeds()) feed->look(patience);
 }
 
 }  // namespace vat

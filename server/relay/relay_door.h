@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "server/relay/relayed_client.h"
@@ -19,41 +20,60 @@ class RelayDoor {
     std::string instance;  ///< unique for this run of the node
     std::string url;       ///< URL of this node
   };
+  /// The owner of a session, as the directory shows it.
+  struct Owner {
+    std::string node;
+    std::uint64_t epoch = 0;
+  };
   /// The arguments must outlive the door and its clients.
   RelayDoor(Place place, NatsConnection& connection, ServerMetrics& metrics,
             boost::asio::thread_pool& pool, const Clock& clock);
+  ~RelayDoor();
+  RelayDoor(const RelayDoor&) = delete;
+  RelayDoor& operator=(const RelayDoor&) = delete;
 
-  /// Returns a client with a link to the node `owner` of the session. The next call must be
+  /// Returns a client with a link to the owner of the session. The next call must be
   /// RelayedClient::join().
   std::shared_ptr<RelayedClient> open(std::shared_ptr<ClientOutbox> outbox,
-                                      const std::string& session, const std::string& owner,
-                                      std::uint64_t epoch);
+                                      const std::string& session, const Owner& owner);
   /// Returns whether the owner of this epoch has said that it has the session no longer.
   bool has_moved(const std::string& session, std::uint64_t epoch);
-  /// Ends the links to all nodes for which `is_present` is false.
-  void end_silent(const std::function<bool(const std::string&)>& is_present);
+  /// Once per second, ends the links to silent or previous owners, opens other links for frames
+  /// that have ended, and closes viewers who acknowledge no frame for `patience`. `owner_of`
+  /// returns the owner of a session, or nothing if the session has been closed. Call it often.
+  void look(const std::function<std::optional<Owner>(const std::string& session)>& owner_of,
+            std::chrono::seconds patience);
 
   /// Returns the subject on which a node receives the messages of relays.
   static std::string owner_subject(const std::string& node);
+  /// Returns the subject of the messages to the client with this link.
+  static std::string client_subject(const std::string& link);
 
  private:
+  struct Feed {
+    std::weak_ptr<RelayFeed> feed;
+    // Not a member of the feed, which its handler may destroy.
+    std::unique_ptr<NatsConnection::Subscription> subscription;
+  };
   void receive(const std::string& bytes);
   void note_move(const std::string& session, std::uint64_t epoch);
-  std::shared_ptr<RelayFeed> feed(const std::string& session, const std::string& owner);
+  std::shared_ptr<RelayFeed> feed(const std::string& session, const Owner& owner);
   std::string next_link();
+  std::vector<std::shared_ptr<RelayedClient>> all_clients();
+  std::vector<std::shared_ptr<RelayFeed>> all_feeds();
 
   const Place place_;
   NatsConnection& connection_;
   ServerMetrics& metrics_;
   boost::asio::thread_pool& pool_;
   const Clock& clock_;
-  const std::string subject_;
 
   OwnedMutex mutex_;  // guards the members below
   std::uint64_t links_opened_ = 0;
   std::map<std::string, std::weak_ptr<RelayedClient>> clients_;  // by link
-  std::map<std::string, std::weak_ptr<RelayFeed>> feeds_;        // by session
+  std::map<std::string, Feed> feeds_;                            // by session
   std::map<std::string, std::uint64_t> moved_;  // last ended epochs of sessions that have moved
+  SteadyClock::time_point looked_{};
   std::unique_ptr<NatsConnection::Subscription> subscription_;
 };
 

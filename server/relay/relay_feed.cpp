@@ -1,5 +1,6 @@
 #include "server/relay/relay_feed.h"
 
+#include <exception>
 #include <mutex>
 #include <span>
 #include <stdexcept>
@@ -12,7 +13,10 @@
 namespace vat {
 namespace {
 
-/// Returns the attribute errors that satisfy both wishes; 0: the attribute is not wanted.
+/// The owner answers a message of each look().
+constexpr std::chrono::seconds kFeedSilence(3);
+
+/// Reduces `errors`, so that they also satisfy `wish`. 0: the attribute is not wanted.
 void add_wish(const ByAttribute<double>& wish, ByAttribute<double>& errors) {
   for (std::size_t a = 0; a < kFrameAttributes; ++a) {
     if (wish[a] > 0 && (errors[a] == 0 || wish[a] < errors[a])) errors[a] = wish[a];
@@ -25,13 +29,14 @@ RelayFeed::RelayFeed(Place place, NatsConnection& connection, ServerMetrics& met
                      boost::asio::thread_pool& pool, const Clock& clock)
     : place_(std::move(place)),
       connection_(connection),
+      clock_(clock),
       frames_(std::make_shared<FrameFeed>(place_.session, std::nullopt, metrics, pool, clock)) {
   const std::lock_guard lock(mutex_);
   open_line();
 }
 
 RelayFeed::~RelayFeed() {
-  if (is_watching_ && !has_ended_) line_->send(RelayKind::end);
+  if (is_watching_) line_->send(RelayKind::end);
 }
 
 void RelayFeed::open_line() {
@@ -43,25 +48,8 @@ void RelayFeed::open_line() {
   decoder_ = {};
   last_ = nullptr;
   is_watching_ = false;
-}
-
-void RelayFeed::start() {
-  // The handler may run while the feed is destroyed.
-  subscription_ = connection_.subscribe(place_.own_subject,
-                                        [weak = weak_from_this()](const NatsMessage& message) {
-                                          if (const auto feed = weak.lock())
-                                            feed->receive(message.data);
-                                        });
-}
-
-void RelayFeed::end() {
-  const std::lock_guard lock(mutex_);
-  has_ended_ = true;
-}
-
-bool RelayFeed::has_ended() const {
-  const std::lock_guard lock(mutex_);
-  return has_ended_;
+  is_broken_ = false;
+  heard_ = clock_.now();
 }
 
 std::uint64_t RelayFeed::tick() const {
@@ -74,7 +62,7 @@ void RelayFeed::add(std::shared_ptr<ClientOutbox> outbox, std::uint64_t subscrip
   const std::lock_guard lock(mutex_);
   VAT_CHECK(outbox != nullptr);
   const ConnectionId id = outbox->id();
-  viewers_[id] = {wanted, std::move(outbox), subscription};
+  viewers_[id] = {std::move(outbox), subscription, wanted};
   update_watch();
   admit_waiting();
 }
@@ -86,15 +74,23 @@ void RelayFeed::remove(ConnectionId viewer) {
   update_watch();
 }
 
+void RelayFeed::repeat(ConnectionId viewer) {
+  const std::lock_guard lock(mutex_);
+  const auto found = viewers_.find(viewer);
+  if (found == viewers_.end()) return;
+  found->second.is_waiting = true;
+  admit_waiting();
+}
+
 void RelayFeed::update_watch() {
   VAT_CHECK(mutex_.is_held());
   ByAttribute<double> wanted{};
   for (const auto& [id, viewer] : viewers_) add_wish(viewer.wanted.attribute_errors, wanted);
   if (std::exchange(is_watching_, true) && wanted == watched_) return;
   watched_ = wanted;
-  has_ended_ = has_ended_ || !line_->send(RelayKind::watch, {{"session", place_.session},
-                                                             {"subject", place_.own_subject},
-                                                             {"attributes", wanted}});
+  line_->send(
+      RelayKind::watch,
+      {{"session", place_.session}, {"subject", place_.own_subject}, {"attributes", wanted}});
 }
 
 bool RelayFeed::has_attributes_of(const Subscription& wanted) const {
@@ -110,8 +106,9 @@ void RelayFeed::admit_waiting() {
   VAT_CHECK(mutex_.is_held());
   bool has_new = false;
   for (auto& [id, viewer] : viewers_) {
-    if (viewer.waiting == nullptr || !has_attributes_of(viewer.wanted)) continue;
-    frames_->add(std::exchange(viewer.waiting, nullptr), viewer.subscription, viewer.wanted);
+    if (!viewer.is_waiting || !has_attributes_of(viewer.wanted)) continue;
+    viewer.is_waiting = false;
+    frames_->add(viewer.outbox, viewer.subscription, viewer.wanted);
     has_new = true;
   }
   if (has_new) publish();
@@ -126,23 +123,26 @@ void RelayFeed::publish() {
 void RelayFeed::receive(const std::string& bytes) {
   auto message = read_relay_message(bytes);
   const std::lock_guard lock(mutex_);
-  if (!message || has_ended_ || message->link != line_->link()) return;
-  switch (received_.take(*message)) {
-    case RelayInput::Taken::part:
-      return;
-    case RelayInput::Taken::lost:
-      log_warning("relay: a message of the node {} was lost", place_.owner);
-      open_line();
-      return update_watch();
-    case RelayInput::Taken::whole:
-      break;
+  if (!message || is_broken_ || message->link != line_->link()) return;
+  heard_ = clock_.now();
+  try {
+    const RelayInput::Taken taken = received_.take(*message);
+    if (taken == RelayInput::Taken::part) return;
+    if (taken == RelayInput::Taken::lost || message->kind == RelayKind::end) {
+      is_broken_ = true;  // look() opens another link
+    } else if (message->kind == RelayKind::frame) {
+      receive_frame(message->body);
+    } else if (message->kind == RelayKind::text) {
+      receive_facts(message->body);
+    }
+  } catch (const std::exception& error) {
+    log_warning("relay: frames of the session {}: {}", place_.session, error.what());
+    is_broken_ = true;
   }
-  if (message->kind == RelayKind::end) has_ended_ = true;
-  if (message->kind == RelayKind::frame) receive_frame(message->body);
-  if (message->kind == RelayKind::text) receive_facts(message->body);
 }
 
 void RelayFeed::receive_facts(const std::string& text) {
+  VAT_CHECK(mutex_.is_held());
   const FrameFacts facts = read_frame_facts(Json::parse(text));
   frames_->set_vat(facts.vat);
   frames_->set_default_error(facts.default_error);
@@ -157,6 +157,18 @@ void RelayFeed::receive_frame(const std::string& bytes) {
   line_->send(RelayKind::ack, {{"number", last_->header.number}});
   publish();
   admit_waiting();
+}
+
+void RelayFeed::look(std::chrono::seconds patience) {
+  const std::lock_guard lock(mutex_);
+  const auto now = clock_.now();
+  for (const auto& [id, viewer] : viewers_) viewer.outbox->close_if_silent(now, patience);
+  if (!is_watching_ || viewers_.empty()) return;
+  if (is_broken_ || now - heard_ > kFeedSilence) {
+    open_line();
+    return update_watch();
+  }
+  line_->send(RelayKind::alive, {{"subject", place_.own_subject}});
 }
 
 }  // namespace vat

@@ -13,13 +13,17 @@ namespace vat {
 namespace {
 
 constexpr std::uint16_t kNoRoom = 1013;
-constexpr std::uint16_t kGoingAway = 1001;
+constexpr std::uint16_t kGoingAwayCode = 1001;
+constexpr std::chrono::seconds kHostLookInterval(1);
+/// A relay sends a message on each link more often.
+constexpr std::chrono::seconds kRelaySilence(15);
 /// The transport uses lower numbers.
 constexpr ConnectionId kFirstRelayed = ConnectionId{1} << 62;
 
 Subscription read_wish(const Json& fields) {
   Subscription wanted;
   wanted.max_error = 0;
+  wanted.keeps_precision = true;
   wanted.attribute_errors = fields.at("attributes").get<ByAttribute<double>>();
   return wanted;
 }
@@ -55,13 +59,16 @@ void RelayHost::stop() {
   thread_.join();
 }
 
-void RelayHost::end_silent(std::function<bool(const std::string&)> is_present) {
+void RelayHost::look(std::function<bool(const std::string&)> is_present) {
   boost::asio::post(thread_, [this, is_present = std::move(is_present)] {
-    std::vector<std::string> silent;
+    const auto now = clock_.now();
+    if (now - looked_ < kHostLookInterval) return;
+    looked_ = now;
     for (const auto& [name, link] : links_) {
-      if (!is_present(link.relay)) silent.push_back(name);
+      const std::string relay = name.substr(0, name.find('.'));
+      if (now - link.heard <= kRelaySilence && is_present(relay)) continue;
+      link.connection->close(kGoingAwayCode, "the relay is silent");
     }
-    for (const std::string& name : silent) remove(name);
   });
 }
 
@@ -71,18 +78,18 @@ void RelayHost::receive(const std::string& bytes) {
   try {
     const auto found = links_.find(message->link);
     if (found == links_.end()) {
-      if (message->number != 1) return;  // of a link that has ended
+      if (message->number != 1) return refuse(*message);
       if (message->kind == RelayKind::open) return open(*message);
       if (message->kind == RelayKind::watch) return watch(*message);
-      return;
+      return refuse(*message);
     }
     Link& link = found->second;
+    link.heard = clock_.now();
     switch (link.received.take(*message)) {
       case RelayInput::Taken::part:
         return;
       case RelayInput::Taken::lost:
-        log_warning("relay: a message of the node {} was lost", link.relay);
-        return link.connection->close(kGoingAway, "a message was lost");
+        return link.connection->close(kGoingAwayCode, "a message was lost");
       case RelayInput::Taken::whole:
         break;
     }
@@ -96,6 +103,9 @@ void RelayHost::receive(const std::string& bytes) {
         return watch(*message);
       case RelayKind::ack:
         return acknowledge(link, *message);
+      case RelayKind::alive:
+        link.line->send(RelayKind::alive);
+        return;
       case RelayKind::end:
         link.connection->abandon();
         return remove(found);
@@ -108,22 +118,31 @@ void RelayHost::receive(const std::string& bytes) {
   }
 }
 
+void RelayHost::refuse(const RelayMessage& message) {
+  if (message.kind == RelayKind::end) return;
+  const Json& fields = message.fields;
+  // The number of the first message tells the relay that messages were lost.
+  RelayLine line(connection_, fields.value("subject", RelayDoor::client_subject(message.link)),
+                 message.link);
+  line.send(RelayKind::end, {{"code", kGoingAwayCode}});
+}
+
 RelayHost::Link& RelayHost::add(RelayMessage message) {
   const Json& fields = message.fields;
-  auto line = std::make_unique<RelayLine>(connection_, fields.at("subject"), message.link);
+  const auto line = std::make_shared<RelayLine>(connection_, fields.at("subject"), message.link);
   auto connection = std::make_shared<RelayedConnection>(
-      ++last_id_, fields.value("address", ""), std::move(line),
+      ++last_id_, fields.value("address", ""), line,
       [this, link = message.link] { boost::asio::post(thread_, [this, link] { remove(link); }); });
-  const std::string relay = message.link.substr(0, message.link.find('.'));
-  Link& link = links_.emplace(message.link, Link{relay, std::move(connection), {}, "", nullptr})
-                   .first->second;
+  Link& link = links_[message.link];
+  link = {std::move(connection), line, {}, clock_.now(), "", nullptr};
   link.received.take(message);
   return link;
 }
 
 void RelayHost::open(const RelayMessage& message) {
   const Link& link = add(message);
-  if (server_.open(link.connection, read_grant(message.fields.at("access")))) return;
+  const Grant access = read_grant(message.fields.at("access"));
+  if (server_.open(link.connection, access, message.fields.at("is_open"))) return;
   link.connection->close(kNoRoom, "too many connections");
 }
 
@@ -133,9 +152,10 @@ void RelayHost::watch(const RelayMessage& message) {
   if (link.viewer == nullptr) {
     link.session = message.fields.at("session");
     link.viewer = std::make_shared<ClientOutbox>(link.connection);
+    link.viewer->set_gate(server_.gate);
   }
   if (server_.watch(link.viewer, link.session, read_wish(message.fields))) return;
-  link.connection->close(kGoingAway, "the session is not here");
+  link.connection->close(kGoingAwayCode, "the session is not here");
 }
 
 void RelayHost::acknowledge(Link& link, const RelayMessage& message) {

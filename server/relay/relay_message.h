@@ -18,11 +18,13 @@ enum class RelayKind : std::uint8_t {
   watch,  ///< to the owner: the relay wants the frames of a session, or other attributes
   text,   ///< both ways: a text message of the client, or for it
   frame,  ///< to the relay: an encoded frame
-  ack,    ///< to the owner: a frame was decoded or rejected
+  ack,    ///< to the owner: a frame was decoded
+  alive,  ///< both ways: the link exists; the owner answers
   end     ///< both ways: the link ends
 };
 template <>
-inline constexpr std::array kNamesOf<RelayKind>{"open", "watch", "text", "frame", "ack", "end"};
+inline constexpr std::array kNamesOf<RelayKind>{"open", "watch", "text", "frame",
+                                                "ack",  "alive", "end"};
 
 /// Message of a link. A link connects a client, or the viewers of a session at a relay, with the
 /// owner of the session.

@@ -1,6 +1,7 @@
 #include "server/relay/relayed_client.h"
 
 #include <algorithm>
+#include <charconv>
 #include <mutex>
 #include <utility>
 
@@ -11,17 +12,32 @@
 namespace vat {
 namespace {
 
-// The owner answers requests of the client itself with other ids or in other states.
 constexpr const char* kEnterId = "vat.enter";
 constexpr const char* kJoinId = "vat.join";
 constexpr const char* kLeaveId = "vat.leave";
 constexpr std::string_view kEventStart = R"({"jsonrpc":"2.0","method":")";
+constexpr std::chrono::seconds kQuestionInterval(4);
+constexpr std::chrono::seconds kOwnerSilence(10);
+// Close codes of PROTOCOL.md that a client answers by joining again.
+constexpr std::uint16_t kGoingAway = 1001;
+constexpr std::uint16_t kNotOwner = 4012;
 
 /// Returns the name of the event, or nothing if the text is a reply.
 std::string_view event_of(std::string_view text) {
   if (!text.starts_with(kEventStart)) return {};
   text.remove_prefix(kEventStart.size());
   return text.substr(0, text.find('"'));
+}
+
+/// Returns the member `epoch` of a description, which is long.
+std::uint32_t epoch_of(std::string_view description) {
+  constexpr std::string_view kName = R"("epoch":)";
+  std::uint32_t epoch = 0;
+  const auto at = description.find(kName);  // quotation marks in names are escaped
+  VAT_CHECK(at != std::string_view::npos);
+  const char* const begin = description.data() + at + kName.size();
+  std::from_chars(begin, description.data() + description.size(), epoch);
+  return epoch;
 }
 
 std::string write_request(const char* id, const char* method, const Json& params) {
@@ -56,27 +72,31 @@ RelayedClient::RelayedClient(Place place, std::unique_ptr<RelayLine> line,
       outbox_(std::move(outbox)),
       links_(std::move(links)),
       clock_(clock),
-      membership_(outbox_->join()) {}
+      membership_(outbox_->join()),
+      heard_(clock.now()),
+      asked_(clock.now()) {}
 
 RelayedClient::~RelayedClient() {
   abandon();
 }
 
-void RelayedClient::join(PendingReply reply, const Grant& access, const std::string& token,
-                         const Json& params) {
+void RelayedClient::join(PendingReply reply, Entry entry, const Json& params) {
+  const Grant& access = entry.access;
+  const Json open{{"subject", place_.subject},
+                  {"address", outbox_->address()},
+                  {"is_open", entry.is_open},
+                  {"access",
+                   {{"role", static_cast<int>(access.role)},
+                    {"session", access.session},
+                    {"is_invitation", access.is_invitation}}}};
+  const std::string token = entry.token;
   {
     const std::lock_guard lock(mutex_);
     joining_ = std::move(reply);
     is_entering_ = !token.empty();
+    entry_ = std::move(entry);
   }
-  send(RelayKind::open,
-       {{"subject", place_.subject},
-        {"address", outbox_->address()},
-        {"access",
-         {{"role", static_cast<int>(access.role)},
-          {"session", access.session},
-          {"is_invitation", access.is_invitation}}}},
-       {});
+  send(RelayKind::open, open, {});
   if (!token.empty()) {
     send(RelayKind::text, Json::object(),
          write_request(kEnterId, "access.enter", {{"token", token}}));
@@ -84,48 +104,65 @@ void RelayedClient::join(PendingReply reply, const Grant& access, const std::str
   send(RelayKind::text, Json::object(), write_request(kJoinId, "session.join", params));
 }
 
-void RelayedClient::forward(std::string_view message, bool wants_reply) {
+bool RelayedClient::forward(std::string_view message, bool wants_reply) {
   {
     const std::lock_guard lock(mutex_);
+    if (state_ == State::left || state_ == State::closed) return false;
     replies_due_ += wants_reply ? 1 : 0;
   }
   send(RelayKind::text, Json::object(), std::string(message));
+  return true;
 }
 
 void RelayedClient::send(RelayKind kind, Json fields, std::string body) {
   if (!line_->send(kind, std::move(fields), std::move(body))) fail();
 }
 
-void RelayedClient::leave(PendingReply reply) {
+void RelayedClient::when_joined(Task task) {
+  State state = State::left;
   {
     const std::lock_guard lock(mutex_);
-    leaving_ = std::move(reply);
-    keeper_ = shared_from_this();
+    state = state_;
+    if (state == State::joining) when_joined_.push_back(std::move(task));
   }
-  end();
-  send(RelayKind::text, Json::object(), write_request(kLeaveId, "session.leave", Json::object()));
+  if (state != State::joining) task(state == State::joined);
 }
 
-void RelayedClient::when_joined(std::function<void()> task) {
-  VAT_CHECK(mutex_.is_held());
-  if (state_ == State::joining) return when_joined_.push_back(std::move(task));
-  task();
-}
-
-void RelayedClient::subscribe(PendingReply reply, const Subscription& wanted) {
-  const std::lock_guard lock(mutex_);
-  when_joined([this, wanted, waiting = std::make_shared<PendingReply>(std::move(reply))] {
-    if (feed_ == nullptr || feed_->has_ended()) feed_ = links_.feed();
-    const std::uint64_t number = outbox_->subscribe(membership_, feed_->frames(), clock_.now());
-    if (number == 0) return waiting->answer(not_joined());
-    feed_->add(outbox_, number, wanted);
-    waiting->answer(Json{{"tick", tick_locked()}});
+void RelayedClient::leave(PendingReply reply) {
+  when_joined([self = shared_from_this(),
+               waiting = std::make_shared<PendingReply>(std::move(reply))](bool has_joined) {
+    if (!has_joined) return waiting->answer(not_joined());
+    {
+      const std::lock_guard lock(self->mutex_);
+      self->leaving_ = std::move(*waiting);
+      self->keeper_ = self;
+    }
+    self->end();
+    self->send(RelayKind::text, Json::object(),
+               write_request(kLeaveId, "session.leave", Json::object()));
   });
 }
 
+void RelayedClient::subscribe(PendingReply reply, const Subscription& wanted) {
+  when_joined(
+      [this, wanted, waiting = std::make_shared<PendingReply>(std::move(reply))](bool has_joined) {
+        if (!has_joined) return waiting->answer(not_joined());
+        const auto feed = links_.feed();
+        const std::lock_guard lock(mutex_);
+        if (state_ != State::joined) return waiting->answer(not_joined());
+        if (feed_ != nullptr && feed_ != feed) feed_->remove(outbox_->id());
+        feed_ = feed;
+        const std::uint64_t number = outbox_->subscribe(membership_, feed->frames(), clock_.now());
+        if (number == 0) return waiting->answer(not_joined());
+        feed->add(outbox_, number, wanted);
+        waiting->answer(Json{{"tick", tick_locked()}});
+      });
+}
+
 void RelayedClient::unsubscribe(PendingReply reply) {
-  const std::lock_guard lock(mutex_);
-  when_joined([this, waiting = std::make_shared<PendingReply>(std::move(reply))] {
+  when_joined([this, waiting = std::make_shared<PendingReply>(std::move(reply))](bool has_joined) {
+    if (!has_joined) return waiting->answer(not_joined());
+    const std::lock_guard lock(mutex_);
     outbox_->unsubscribe();
     if (feed_ != nullptr) std::exchange(feed_, nullptr)->remove(outbox_->id());
     waiting->answer(Json{{"tick", tick_locked()}});
@@ -152,17 +189,19 @@ void RelayedClient::receive(RelayMessage message) {
   {
     const std::lock_guard lock(mutex_);
     if (state_ == State::left && !leaving_) return;
+    heard_ = clock_.now();
     taken = received_.take(message);
   }
   if (taken == RelayInput::Taken::part) return;
-  if (taken == RelayInput::Taken::lost) {
-    log_warning("relay: a message of the node {} was lost", place_.owner);
-    return fail();
-  }
+  if (taken == RelayInput::Taken::lost) return fail();
   if (message.kind == RelayKind::text) return receive_text(message.body);
-  if (message.kind != RelayKind::end || !end()) return;
-  outbox_->close(message.fields.value("code", std::uint16_t{1011}),
-                 message.fields.value("reason", std::string()));
+  if (message.kind == RelayKind::end) receive_end(message.fields);
+}
+
+void RelayedClient::receive_end(const Json& fields) {
+  const auto code = fields.value("code", kGoingAway);
+  if (code == kGoingAway || code == kNotOwner) return fail();
+  if (end()) outbox_->close(code, fields.value("reason", std::string()));
 }
 
 void RelayedClient::receive_text(const std::string& text) {
@@ -181,11 +220,15 @@ void RelayedClient::receive_event(std::string_view event, const std::string& tex
     return fail();
   }
   outbox_->send_event(membership_, std::make_shared<const std::string>(text));
-  if (event == "session.description") {
-    // Not before the event, so that no frame of the epoch is sent earlier.
-    outbox_->start_epoch(membership_, Json::parse(text).at("params").at("epoch"));
-  }
+  // Not before the event, so that no frame of the epoch is sent earlier.
+  if (event == "session.description") start_epoch(epoch_of(text));
   if (event == "session.closed") close();
+}
+
+void RelayedClient::start_epoch(std::uint32_t epoch) {
+  outbox_->start_epoch(membership_, epoch);
+  const std::lock_guard lock(mutex_);
+  if (feed_ != nullptr) feed_->repeat(outbox_->id());  // the frames may have been faster
 }
 
 bool RelayedClient::receive_reply(const std::string& text) {
@@ -193,29 +236,54 @@ bool RelayedClient::receive_reply(const std::string& text) {
     const std::lock_guard lock(mutex_);
     if (!joining_ && !leaving_ && !is_entering_) return false;
   }
-  Json message = Json::parse(text);
+  const Json message = Json::parse(text);
   const Json& id = message.at("id");
-  if (id == kEnterId) {  // may follow the reply to the join
-    {
-      const std::lock_guard lock(mutex_);
-      is_entering_ = false;
-      if (!joining_) return true;
-    }
-    if (message.contains("error")) finish_join(message);
-    return true;
-  }
-  if (id == kJoinId) {
-    finish_join(message);
-    return true;
-  }
-  if (id != kLeaveId) return false;
   const auto keep = shared_from_this();
-  const std::lock_guard lock(mutex_);
-  if (leaving_) leaving_->answer(message.value("result", Json::object()));
-  leaving_.reset();
-  keeper_.reset();
-  line_->send(RelayKind::end);
+  std::unique_lock lock(mutex_);
+  if (id == kEnterId && is_entering_) {  // may follow the reply to the join
+    is_entering_ = false;
+    lock.unlock();
+    finish_enter(message);
+  } else if (id == kJoinId && joining_) {
+    lock.unlock();
+    finish_join(message);
+  } else if (id == kLeaveId && leaving_) {
+    leaving_->answer(message.value("result", Json::object()));
+    leaving_.reset();
+    keeper_.reset();
+    line_->send(RelayKind::end);
+  } else {
+    return false;
+  }
   return true;
+}
+
+void RelayedClient::finish_enter(const Json& message) {
+  if (const auto error = message.find("error"); error != message.end()) {
+    return fail_join(read_error(*error));
+  }
+  const Json& result = message.at("result");
+  std::function<void(const Grant&)> granted;
+  {
+    const std::lock_guard lock(mutex_);
+    granted = entry_.granted;
+  }
+  if (granted) granted({read_role(result.at("role")), result.value("session", ""), true});
+}
+
+void RelayedClient::fail_join(RpcError error) {
+  std::optional<PendingReply> reply;
+  std::vector<Task> tasks;
+  {
+    const std::lock_guard lock(mutex_);
+    if (!joining_) return;
+    reply.swap(joining_);
+    tasks.swap(when_joined_);
+  }
+  const bool has_ended = end();
+  if (has_ended) line_->send(RelayKind::end);
+  reply->answer(std::move(error));
+  for (const Task& task : tasks) task(false);
 }
 
 void RelayedClient::finish_join(const Json& message) {
@@ -225,26 +293,22 @@ void RelayedClient::finish_join(const Json& message) {
       links_.note_move();
       answer = moved_to(place_.session, place_.own_url);
     }
-    std::optional<PendingReply> reply;
-    {
-      const std::lock_guard lock(mutex_);
-      reply.swap(joining_);
-    }
-    if (!end()) return;
-    line_->send(RelayKind::end);
-    if (reply) reply->answer(std::move(answer));
-    return;
+    return fail_join(std::move(answer));
   }
   const Json& result = message.at("result");
-  const std::lock_guard lock(mutex_);
-  if (state_ != State::joining || !joining_) return;
-  state_ = State::joined;
-  joined_tick_ = result.at("tick");
-  outbox_->set_role(membership_, read_role(result.at("role")));
-  outbox_->start_epoch(membership_, result.at("description").at("epoch"));
-  joining_->answer(result);
-  joining_.reset();
-  for (const auto& task : std::exchange(when_joined_, {})) task();
+  std::vector<Task> tasks;
+  {
+    const std::lock_guard lock(mutex_);
+    if (state_ != State::joining || !joining_) return;
+    state_ = State::joined;
+    joined_tick_ = result.at("tick");
+    outbox_->set_role(membership_, read_role(result.at("role")));
+    outbox_->start_epoch(membership_, result.at("description").at("epoch"));
+    joining_->answer(result);
+    joining_.reset();
+    tasks.swap(when_joined_);
+  }
+  for (const Task& task : tasks) task(true);
 }
 
 bool RelayedClient::end() {
@@ -253,14 +317,17 @@ bool RelayedClient::end() {
   // After close(), the outbox may have another membership.
   const bool is_member = state_ != State::closed;
   state_ = State::left;
-  when_joined_.clear();
   if (!is_member) return true;
   if (feed_ != nullptr) std::exchange(feed_, nullptr)->remove(outbox_->id());
-  outbox_->leave();
+  outbox_->leave(membership_);
   return true;
 }
 
 void RelayedClient::close() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (state_ == State::joining) return;  // the reply to the join follows
+  }
   if (!end()) return;
   const std::lock_guard lock(mutex_);
   if (replies_due_ == 0) {
@@ -282,28 +349,52 @@ void RelayedClient::count_reply() {
 }
 
 void RelayedClient::abandon() {
+  std::vector<Task> dropped;  // they may own this client
+  const auto keep = weak_from_this().lock();
+  {
+    const std::lock_guard lock(mutex_);
+    dropped.swap(when_joined_);
+  }
   if (end()) line_->send(RelayKind::end);
 }
 
 void RelayedClient::fail() {
   const auto keep = weak_from_this().lock();
-  std::optional<PendingReply> joining;
   std::optional<PendingReply> leaving;
+  State state{};
   {
     const std::lock_guard lock(mutex_);
-    joining.swap(joining_);
     leaving.swap(leaving_);
     keeper_.reset();
+    state = state_;
   }
-  if (leaving) return leaving->answer(Json{{"tick", tick()}});
-  if (!joining) {
-    const Json where{{"session", place_.session}, {"url", ""}};  // again on this connection
-    outbox_->send_event(membership_,
-                        std::make_shared<const std::string>(write_event("session.moved", where)));
+  if (leaving) {
+    line_->send(RelayKind::end);
+    return leaving->answer(Json{{"tick", tick()}});
+  }
+  if (state == State::joining) {
+    return fail_join(storage_failed(StorageError::Kind::unreachable));
   }
   if (!end()) return;
   line_->send(RelayKind::end);
-  if (joining) joining->answer(storage_failed(StorageError::Kind::unreachable));
+  if (state == State::closed) return;
+  // Without a URL: the client joins again on this connection.
+  outbox_->send(write_event("session.moved", {{"session", place_.session}, {"url", ""}}));
+}
+
+void RelayedClient::look() {
+  bool is_silent = false;
+  bool asks = false;
+  {
+    const std::lock_guard lock(mutex_);
+    if (state_ == State::left && !leaving_) return;
+    const auto now = clock_.now();
+    is_silent = now - heard_ > kOwnerSilence;
+    asks = now - asked_ > kQuestionInterval;
+    if (asks) asked_ = now;
+  }
+  if (is_silent) return fail();
+  if (asks) send(RelayKind::alive, {{"subject", place_.subject}}, {});
 }
 
 }  // namespace vat

@@ -15,7 +15,7 @@ class RelayedConnection final : public Connection {
  public:
   /// `closed` is called once, when the connection ends by close() or by a failure. It must not
   /// wait.
-  RelayedConnection(ConnectionId id, std::string address, std::unique_ptr<RelayLine> line,
+  RelayedConnection(ConnectionId id, std::string address, std::shared_ptr<RelayLine> line,
                     std::function<void()> closed)
       : id_(id), address_(std::move(address)), line_(std::move(line)), closed_(std::move(closed)) {}
 
@@ -23,7 +23,7 @@ class RelayedConnection final : public Connection {
   const std::string& address() const override { return address_; }
   void send_text(std::string head, std::shared_ptr<const std::string> tail) override;
   void send_binary(std::shared_ptr<const std::string> bytes) override;
-  /// Returns 0: the window of frames limits the memory, and so does NATS.
+  /// Returns 0. The window of frames limits the memory of frames.
   std::size_t queued_bytes() const override { return 0; }
   void close(std::uint16_t code, std::string_view reason) override;
   /// Ends the connection without a message, because the other node has ended it.
@@ -34,7 +34,7 @@ class RelayedConnection final : public Connection {
 
   const ConnectionId id_;
   const std::string address_;
-  const std::unique_ptr<RelayLine> line_;
+  const std::shared_ptr<RelayLine> line_;
   const std::function<void()> closed_;
   std::atomic<bool> is_closed_ = false;
 };

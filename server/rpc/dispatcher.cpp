@@ -24,9 +24,12 @@ bool controls_frames(std::string_view method) {
   return method == "frames.subscribe" || method == "frames.unsubscribe";
 }
 
-/// Returns whether the node of the session answers the request, and not this node.
-bool is_for_owner(const RpcRequest& request) {
-  if (request.method == "session.close") return true;
+/// Returns whether the node of the client's session answers the request, and not this node.
+bool is_for_owner(const RpcRequest& request, const std::string& session) {
+  if (request.method == "session.close" || request.method == "access.ticket") {
+    const auto named = request.params.find("session");
+    return named != request.params.end() && *named == session;
+  }
   const Method* method = find_method(request.method);
   return method != nullptr && std::holds_alternative<SessionHandler>(method->handler) &&
          !controls_frames(request.method);
@@ -58,8 +61,10 @@ void Dispatcher::receive(const SessionDirectory::Sender& sender, std::string_vie
       client.send(write_reply(id.value_or(nullptr), std::move(*error)));
       return;
     }
-    if (sender.relay != nullptr && is_for_owner(std::get<RpcRequest>(request))) {
-      return sender.relay->forward(message, id.has_value());
+    if (sender.relay != nullptr &&
+        is_for_owner(std::get<RpcRequest>(request), sender.relay->place().session) &&
+        sender.relay->forward(message, id.has_value())) {
+      return;
     }
     PendingReply reply(sender.outbox, id, &directory_.resources().metrics);
     if (!id) reply.set_notification(std::get<RpcRequest>(request).method);

@@ -43,20 +43,23 @@ SessionServer::SessionServer(const Catalogue& catalogue, ServerSettings settings
   if (cluster == nullptr) return;
   RelayHost::Server server{
       *this,
-      [&directory](std::shared_ptr<Connection> connection, const Grant& access) {
+      [&directory](std::shared_ptr<Connection> connection, const Grant& access, bool is_open) {
+        const bool needs_token = directory.resources().settings.access.mode == AccessMode::token;
+        if (is_open && needs_token) return false;  // the other node has checked nothing
         return directory.connect(std::move(connection), access);
       },
       [&directory](const std::shared_ptr<ClientOutbox>& viewer, const std::string& session,
                    const Subscription& wanted) { return directory.watch(viewer, session, wanted); },
       [&directory](const std::string& session, std::shared_ptr<ClientOutbox> viewer) {
         directory.unwatch(session, std::move(viewer));
-      }};
-  parts_->relay =
-      std::make_shared<RelayHost>(cluster->name(), cluster->connection(), std::move(server), clock);
+      },
+      *cluster};
+  parts_->relay = std::make_shared<RelayHost>(cluster->name(), cluster->relay_connection(),
+                                              std::move(server), clock);
   directory.on_cluster_change([weak = std::weak_ptr(parts_->relay), cluster] {
-    if (const auto relay = weak.lock()) {
-      relay->end_silent([cluster](const std::string& node) { return cluster->is_present(node); });
-    }
+    const auto relay = weak.lock();
+    if (relay == nullptr) return;
+    relay->look([cluster](const std::string& node) { return cluster->is_present(node); });
   });
 }
 

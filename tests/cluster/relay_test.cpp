@@ -168,6 +168,31 @@ TEST(Relay, GivesTheAnswersAndFramesOfTheOwner) {
   EXPECT_FALSE(relayed.has_speed);
 }
 
+// The frame of the new epoch may be faster than its description.
+TEST(Relay, AViewerOfAPausedSessionSeesItsReset) {
+  Nodes nodes(2, kRelay);
+  const std::string owner = nodes.owner_of(kSession, "a");
+  Received relayed;
+  client::Client viewer(nodes.url(nodes.others(owner).front()), {}, relayed.handlers());
+  client::SessionJoin::Params join;
+  join.session = kSession;
+  viewer.call<client::SessionJoin>(join).get();
+  viewer.call<client::ControlPause>({}).get();
+  viewer.call<client::FramesSubscribe>({}).get();
+  for (int i = 0; i < 5; ++i) {
+    const auto stepped = viewer.call<client::ControlStep>({}).get();
+    ASSERT_TRUE(wait_until([&] {
+      const std::lock_guard lock(relayed.mutex);
+      return relayed.tick == stepped.tick;
+    }));
+    viewer.call<client::ControlReset>({}).get();
+    ASSERT_TRUE(wait_until([&] {
+      const std::lock_guard lock(relayed.mutex);
+      return relayed.tick == 0;
+    })) << i;
+  }
+}
+
 TEST(Relay, AViewerGetsTheAttributesThatItWants) {
   Nodes nodes(2, kRelay);
   const std::string owner = nodes.owner_of(kSession, "a");
@@ -271,7 +296,7 @@ void expect_continuation(Nodes& nodes, const std::function<void(const std::strin
   viewer.call<client::FramesSubscribe>({}).get();
   ASSERT_TRUE(wait_until([&] { return received.count > 0; }));
   end_owner(owner);
-  ASSERT_TRUE(wait_until([&] { return resumed == 1; }));
+  ASSERT_TRUE(wait_until([&] { return resumed > 0; }));
   received.count = 0;
   ASSERT_TRUE(wait_until([&] { return received.count > 0; }));
 }
@@ -284,6 +309,49 @@ TEST(Relay, AClientContinuesWhenTheOwnerFails) {
 TEST(Relay, AClientContinuesWhenTheOwnerStops) {
   Nodes nodes(3, {"--route", "relay", "--drain-seconds", "5"});
   expect_continuation(nodes, [&](const std::string& owner) { nodes.process(owner).stop(); });
+}
+
+TEST(Relay, AClientContinuesWhenTheOwnerIsRestarted) {
+  Nodes nodes(2, kRelay);
+  expect_continuation(nodes, [&](const std::string& owner) {
+    nodes.process(owner).kill();
+    nodes.start(owner);
+  });
+}
+
+TEST(Relay, AClientContinuesAfterAnEndOfNats) {
+  Nodes nodes(2, kRelay);
+  expect_continuation(nodes, [&](const std::string&) {
+    for (std::size_t n = 0; n < nodes.nats().size(); ++n) nodes.nats().kill(n);
+    for (std::size_t n = 0; n < nodes.nats().size(); ++n) nodes.nats().restart(n);
+  });
+}
+
+// With access by token, the owner decides about the token once.
+TEST(Relay, ATokenCountsOnceForAConnection) {
+  constexpr const char* kAdmin = "the admin's token of the cluster";
+  TemporaryFolder folder;
+  folder.write("admin", std::string(kAdmin) + "\n");
+  folder.write("key", "a key of the cluster with sufficient length\n");
+  Nodes nodes(2, {"--route", "relay", "--access", "token", "--admin-token-file",
+                  folder.file("admin"), "--cluster-key-file", folder.file("key")});
+  WaitingClient admin = nodes.connect("a");
+  admin.result("access.enter", {{"token", kAdmin}});
+  admin.result("session.join", {{"session", kSession}});
+  const std::string token =
+      admin.result("session.invite", {{"role", "controller"}, {"uses", 1}}).at("token");
+  const std::string owner = admin.result("session.list").at("sessions").at(0).at("node");
+  const std::string relay = nodes.others(owner).front();
+  WaitingClient guest = nodes.connect(relay);
+  guest.result("access.enter", {{"token", token}});
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_EQ(guest.result("session.join", {{"session", kSession}}).at("role"), "controller");
+    guest.result("session.leave");
+  }
+  WaitingClient late = nodes.connect(relay);
+  late.result("access.enter", {{"token", token}});  // the relay cannot count the uses
+  const Json refused = late.call("session.join", {{"session", kSession}});
+  EXPECT_EQ(refused.at("error").at("data").at("kind"), "not_authenticated") << refused;
 }
 
 // The owner drops the participants of a relay that has failed.
