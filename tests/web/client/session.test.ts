@@ -50,12 +50,18 @@ afterEach(() => {
   vi.useRealTimers();
 });
 
-/** Opens the newest socket and replies to all requests of a session's start. */
-async function enter(): Promise<FakeSocket> {
+/** Opens the newest socket and replies to the requests up to the join. */
+async function join(description: object = kDescription): Promise<FakeSocket> {
   const socket = FakeSocket.newest;
   socket.accept();
   await socket.answer('server.info', { result: { time: 1050 } });
-  await socket.answer('session.join', { result: { description: kDescription } });
+  await socket.answer('session.join', { result: { description } });
+  return socket;
+}
+
+/** Replies to all requests of a session's start. */
+async function enter(): Promise<FakeSocket> {
+  const socket = await join();
   await socket.answer('frames.subscribe', { result: { tick: 0 } });
   return socket;
 }
@@ -75,10 +81,7 @@ describe('the error of positions', () => {
   it('is a fraction of the smallest radius, and is requested again if the radius changes', async () => {
     session = newSession({ errorInRadii: 0.5 });
     session.open();
-    const socket = FakeSocket.newest;
-    socket.accept();
-    await socket.answer('server.info', { result: { time: 1050 } });
-    await socket.answer('session.join', { result: { description: described(0.4, 0.2) } });
+    const socket = await join(described(0.4, 0.2));
     const subscriptions = () =>
       socket.sent.flatMap((m) => (m.method === 'frames.subscribe' ? [m.params] : []));
     expect(subscriptions()).toEqual([{ max_error: 0.1 }]);
@@ -160,11 +163,18 @@ describe('a server that asks for a token', () => {
 });
 
 describe('entering', () => {
-  it('measures the clock, joins and subscribes', async () => {
+  const kMethods = ['server.info', 'session.join', 'frames.subscribe'];
+
+  it('measures the clock, joins and subscribes, and does so again after a break', async () => {
     const socket = await openSession();
-    expect(socket.methods).toEqual(['server.info', 'session.join', 'frames.subscribe']);
+    expect(socket.methods).toEqual(kMethods);
     expect(offsets).toEqual([1000]);
     expect(descriptions).toEqual([kDescription]);
+    socket.break();
+    vi.advanceTimersByTime(100);
+    expect((await enter()).methods).toEqual(kMethods);
+    expect(states).toEqual(['connecting', 'open', 'waiting', 'connecting', 'open']);
+    expect(descriptions).toHaveLength(2);
   });
 
   it.each([
@@ -174,15 +184,6 @@ describe('entering', () => {
     session = newSession({ session: chosen });
     const socket = await openSession();
     expect(socket.sent.find(({ method }) => method === 'session.join')?.params).toEqual(params);
-  });
-
-  it('does the same again after a break', async () => {
-    (await openSession()).break();
-    vi.advanceTimersByTime(100);
-    const second = await enter();
-    expect(second.methods).toEqual(['server.info', 'session.join', 'frames.subscribe']);
-    expect(states).toEqual(['connecting', 'open', 'waiting', 'connecting', 'open']);
-    expect(descriptions).toHaveLength(2);
   });
 
   it('uses a new connection if the server rejects the join', async () => {
@@ -285,10 +286,7 @@ describe('while it is in', () => {
   it('joins without a subscription while the page is hidden, and subscribes later', async () => {
     session.watch(false);
     session.open();
-    const socket = FakeSocket.newest;
-    socket.accept();
-    await socket.answer('server.info', { result: { time: 1050 } });
-    await socket.answer('session.join', { result: { description: kDescription } });
+    const socket = await join();
     expect(socket.methods).toEqual(['server.info', 'session.join']);
     session.watch(true);
     expect(socket.methods).toEqual(['server.info', 'session.join', 'frames.subscribe']);
@@ -327,10 +325,7 @@ describe('going to another session', () => {
     await socket.answer('frames.subscribe', { result: { tick: 0 } });
     socket.break();
     vi.advanceTimersByTime(100);
-    const second = FakeSocket.newest;
-    second.accept();
-    await second.answer('server.info', { result: { time: 1050 } });
-    await second.answer('session.join', { result: { description: kDescription } });
+    const second = await join();
     expect(second.sent.find(({ method }) => method === 'session.join')?.params).toEqual({
       session: 'r1',
       resume: 'b'.repeat(22),

@@ -11,7 +11,7 @@ import {
 import { absorptionLengthOf, kFinishes, lookOf } from '../../../web/viewer/view/base/appearance';
 import { sharedUniforms } from '../../../web/viewer/view/bodies/shared_uniforms';
 import { World } from '../../../web/viewer/view/world';
-import { described, frameOf, kTheme } from './described';
+import { described, frameOf, kTheme } from '../described';
 import format from '../../../protocol/schemas/scene_format.json';
 
 const kSchema = format.$defs.appearance.properties;

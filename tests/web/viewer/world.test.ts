@@ -4,7 +4,7 @@ import { BodyKind } from '../../../web/client/index';
 import type { Frame } from '../../../web/client/index';
 import { sharedUniforms } from '../../../web/viewer/view/bodies/shared_uniforms';
 import { World } from '../../../web/viewer/view/world';
-import { described, frameOf, kTheme } from './described';
+import { described, frameOf, kTheme } from '../described';
 
 const at = (world: World, x: number): number | undefined =>
   world.pick(new Ray(new Vector3(0.1 * x, 0, 5), new Vector3(0, 0, -1)))?.body;

@@ -1,7 +1,7 @@
 import { Color } from 'three';
-import { BodyKind } from '../../../web/client/index';
-import type { BodyDescription, Frame, SessionDescription } from '../../../web/client/index';
-import type { Theme } from '../../../web/viewer/view/base/theme';
+import { BodyKind } from '../../web/client/index';
+import type { BodyDescription, Frame, SessionDescription } from '../../web/client/index';
+import type { Theme } from '../../web/viewer/view/base/theme';
 
 const kNames = ['stage', 'floor', 'shadow', 'grid', 'edge', 'wall', 'mark'];
 export const kTheme = Object.fromEntries(
