@@ -78,6 +78,8 @@ TEST(WrongUsage, OfASimulationIsNamed) {
                {{"--leval=fine", "Did you mean --level?"},
                 {"--level corse", "did you mean \"coarse\"?"},
                 {"--integrator heum", "did you mean \"heun\"?"},
+                {"--integrator heum",
+                 "explicit_euler, heun, runge_kutta_4, symplectic_euler, velocity_verlet"},
                 {"--isa avx", "did you mean \"avx2\"?"},
                 {"--isa avx", "baseline, avx2, avx512"},
                 {"--speed 2", "--speed"},
