@@ -150,7 +150,7 @@ it('adds a shape from a file, and refuses a file without one', async () => {
 });
 
 it('deletes a body, restores it, and changes its material', async () => {
-  await visit('buoyancy');
+  await visit('buoyancy', 20);
   const { page } = visits.viewer;
   const item = page.locator('#bodies li:has(select)').first();
   const before = await visits.observer.body(Number(await item.getAttribute('data-body')));
@@ -159,8 +159,10 @@ it('deletes a body, restores it, and changes its material', async () => {
   await page.click('#undo:enabled');
   await expect.poll(names, kInTime).toContain(before.name);
   const back = (await bodyOf(before.name))!;
+  expect(Math.hypot(...before.velocities[0]!)).toBeGreaterThan(0.1);
   for (const axis of [0, 1, 2]) {
     expect(back.center_of_mass![axis]).toBeCloseTo(before.center_of_mass![axis]!, 6);
+    expect(back.velocities[0]![axis]).toBeCloseTo(before.velocities[0]![axis]!, 6);
   }
   const picker = page.locator(`#bodies select[aria-label="Material of ${before.name}"]`);
   await expect.poll(() => picker.count(), kInTime).toBe(1);
