@@ -42,27 +42,25 @@ async function saved(page: Page, button: string): Promise<{ name: string; bytes:
   return { name, bytes: readFileSync(join(files, name)) };
 }
 
-it.each([
-  ['front', '4', (x: number, y: number, z: number) => -y > 5 * Math.hypot(x, z)],
-  ['side', '5', (x: number, y: number, z: number) => x > 5 * Math.hypot(y, z)],
-  ['top', '6', (x: number, y: number, z: number) => z > 5 * Math.hypot(x, y)],
-  ['corner', '7', (x: number, y: number, z: number) => -y > x && x > 0 && z > 0],
-] as const)('views the scene from the %s', async (_, key, isThere) => {
+const kViews: [string, (x: number, y: number, z: number) => boolean][] = [
+  ['4', (x, y, z) => -y > 5 * Math.hypot(x, z)], // front
+  ['5', (x, y, z) => x > 5 * Math.hypot(y, z)], // side
+  ['6', (x, y, z) => z > 5 * Math.hypot(x, y)], // top
+  ['7', (x, y, z) => -y > x && x > 0 && z > 0], // corner
+];
+
+it('views the scene from each side by a key', async () => {
   await visits.visit('rigid-stack');
   const { page } = visits.viewer;
-  await page.keyboard.press(key);
-  const isFrom = async (): Promise<boolean> => {
-    const [x, y, z, a, b, c] = (await linked(page)).camera as [
-      number,
-      number,
-      number,
-      number,
-      number,
-      number,
-    ];
-    return isThere(x - a, y - b, z - c);
-  };
-  await expect.poll(isFrom, kInTime).toBe(true);
+  for (const [key, isThere] of kViews) {
+    await page.keyboard.press(key);
+    const isFrom = async (): Promise<boolean> => {
+      const { camera } = await linked(page);
+      const [x, y, z] = [0, 1, 2].map((q) => camera[q]! - camera[q + 3]!);
+      return isThere(x!, y!, z!);
+    };
+    await expect.poll(isFrom, kInTime).toBe(true);
+  }
 });
 
 it('follows a body', async () => {

@@ -222,6 +222,7 @@ it('shows that the server stops, that it has stopped, and continues with the nex
   await observer.request('server.drain', { seconds: 1 });
   await says(page, 'notices', 'The server stops within 1 s');
   await isWaiting(page);
+  expect(await page.page.textContent('#connection')).toContain('Not connected');
   observer.leave();
   await says(page, 'summary', 'the last frame');
   await server.ended();

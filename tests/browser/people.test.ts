@@ -102,30 +102,6 @@ it('gives control to a viewer that requests it', async () => {
   owner.leave();
 });
 
-it('makes a link that opens the same view from the same place', async () => {
-  await visits.visit('rigid-stack', { view: 'axes:true' });
-  const { viewer } = visits;
-  await viewer.page.focus('#view');
-  const plain = await viewer.stillPicture();
-  for (let n = 0; n < 8; ++n) await viewer.page.keyboard.press('ArrowLeft');
-  await viewer.page.keyboard.press('l');
-  const link = await viewer.page.inputValue('#share-link');
-  await viewer.page.keyboard.press('Escape');
-  await expect
-    .poll(async () => viewer.difference(plain, await viewer.picture()), kInTime)
-    .toBeGreaterThan(1250);
-  const still = await viewer.stillPicture();
-  const different = await viewer.difference(still, plain);
-  const other = await openPage(link, { deviceScaleFactor: 0.5 });
-  await other.untilTick(0, 0);
-  expect(await other.page.isChecked('#view-axes')).toBe(true);
-  await expect
-    .poll(async () => viewer.difference(still, await other.picture()), kInTime)
-    .toBeLessThan(different / 10);
-  expect(other.problems).toEqual([]);
-  await other.close();
-});
-
 it('switches between light and dark', async () => {
   await visits.visit('rigid-stack');
   const { page } = visits.viewer;

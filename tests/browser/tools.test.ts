@@ -1,5 +1,5 @@
 import { expect, it } from 'vitest';
-import { kInTime, Visits } from './support/visits';
+import { kInTime, kPhone, Visits } from './support/visits';
 
 /** The tools Push and Tilt, by pointer and by keys. */
 const visits = new Visits();
@@ -84,11 +84,7 @@ it('tilts gravity by arrow keys until the Escape key', async () => {
 });
 
 it('has all tools within the reach of a thumb on a phone', async () => {
-  await visits.visit('dam-break', {
-    viewport: { width: 390, height: 800 },
-    hasTouch: true,
-    isMobile: true,
-  });
+  await visits.visit('dam-break', kPhone);
   const { page } = visits.viewer;
   const ids = ['play', 'step', 'reset', 'scene', 'tool-grab', 'tool-push', 'tool-tilt', 'pour'];
   for (const id of [...ids, 'camera-open', 'sheet']) {

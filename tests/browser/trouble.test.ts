@@ -77,6 +77,28 @@ it('passes keys to the open list of scenes, and handles them elsewhere', async (
   await viewer.untilTick(tick + 1);
 });
 
+it('plays and pauses with the space bar, and steps and resets by buttons', async () => {
+  await visits.visit('dam-break');
+  const { observer, viewer } = visits;
+  const { page } = viewer;
+  const before = await viewer.stillPicture();
+  await page.keyboard.press('Space');
+  await viewer.untilTick(10);
+  await page.keyboard.press('Space');
+  await viewer.until('#play[data-playing="false"]');
+  const tick = await observer.tick();
+  await viewer.untilTick(tick, tick);
+  await visits.untilWhole();
+  // A change of fewer pixels could be a single particle.
+  expect(await viewer.difference(before, await viewer.stillPicture())).toBeGreaterThan(250);
+  expect((await observer.nextStatus()).playing).toBe(false);
+  await page.click('#step');
+  await viewer.untilTick(tick + 1);
+  expect(await observer.tick()).toBe(tick + 1);
+  await page.click('#reset');
+  await viewer.untilTick(0, 0);
+});
+
 it('draws again once the browser gives the graphics back', async () => {
   await visits.visit('dam-break');
   const { viewer } = visits;

@@ -13,6 +13,7 @@
 namespace vat::bench::bench_compare_test {
 namespace {
 
+using test::exits;
 using test::ProgramResult;
 using test::run_bench;
 using test::TemporaryFolder;
@@ -123,13 +124,11 @@ TEST(BenchCompare, OtherFilesAreNamed) {
   const TemporaryFolder folder;
   const std::string other = folder.file("other.csv");
   ASSERT_TRUE(write_text(other, "case,threads\na,1\n"));
-  const ProgramResult wrong = run_bench({"compare", other, other});
-  EXPECT_EQ(wrong.exit_code, 1);
-  EXPECT_THAT(wrong.err, testing::HasSubstr(other + ": has no column 'instruction set'"));
+  EXPECT_THAT(run_bench({"compare", other, other}),
+              exits(1, testing::HasSubstr(other + ": has no column 'instruction set'")));
   for (const std::string& absent : {folder.file("none.csv"), folder.file(".")}) {
-    const ProgramResult result = run_bench({"compare", absent, other});
-    EXPECT_EQ(result.exit_code, 1);
-    EXPECT_THAT(result.err, testing::HasSubstr(absent + ": cannot be read"));
+    EXPECT_THAT(run_bench({"compare", absent, other}),
+                exits(1, testing::HasSubstr(absent + ": cannot be read")));
   }
 }
 

@@ -1,9 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
+#include <set>
 
 #include "tests/bench/document/document.h"
 #include "tests/bench/document/markers.h"
@@ -57,16 +58,24 @@ TEST(BenchDocument, FindsEachPictureOnce) {
       testing::ElementsAre("figures/a.svg", "figures/d.svg"));
 }
 
+/// A marker of a page, the file of its results, and the lines of its table.
+struct Filling {
+  std::string marker;
+  const char* file;
+  std::vector<std::string> table;
+};
+
 /// Result files as the commands write them.
 class Results {
  public:
   Results() {
-    write(
-        "validate/validation.json",
-        R"([{"case": "DEF-1", "metric": "x [m]", "measured": 1.5, "reference": 1, "must be": "1 +- 1",
-               "share of tolerance": 0.5, "tolerance from": "theory", "passed": true},
-              {"case": "DEF-1", "metric": "y [m]", "measured": 2.75, "reference": 2, "must be": "2 +- 1",
-               "share of tolerance": 0.75, "tolerance from": "theory", "passed": true},
+    write("validate/validation.json",
+          R"([{"case": "DEF-1", "metric": "x [m]", "measured": 1.5, "reference": 1,
+               "must be": "1 +- 1", "share of tolerance": 0.5, "tolerance from": "theory",
+               "passed": true},
+              {"case": "DEF-1", "metric": "y [m]", "measured": 2.75, "reference": 2,
+               "must be": "2 +- 1", "share of tolerance": 0.75, "tolerance from": "theory",
+               "passed": true},
               {"case": "DEF-1", "metric": "z [m]", "measured": 4, "reference": 3,
                "must be": "reported: 3", "share of tolerance": null, "tolerance from": "too soft",
                "passed": null}])");
@@ -80,19 +89,17 @@ class Results {
                "its evaluations per particle": 100, "best adaptive": "heun",
                "evaluations / fixed": 0.5, "time / fixed": 0.625,
                "local: evaluations / fixed": null, "local: time / fixed": null}])");
-    write(
-        "accuracy/solvers.json",
-        R"([{"problem": "dam", "solver": "tait", "layers": 20, "error of": "front", "error": 0.125,
-               "mean density error": 0.5, "greatest density error": 0.75, "steps": 7,
-               "seconds": 1.5, "hash": "0"}])");
+    write("accuracy/solvers.json",
+          R"([{"problem": "dam", "solver": "tait", "layers": 20, "error of": "front",
+               "error": 0.125, "mean density error": 0.5, "greatest density error": 0.75,
+               "steps": 7, "seconds": 1.5, "hash": "0"}])");
     write("accuracy/tolerances.json",
           R"([{"scene": "dam", "tolerance": 0.01, "failed": 0, "density error": 0.005, "steps": 7,
                "iterations for velocities": 1.5, "iterations for positions": 0.25,
                "seconds": 2}])");
-    write(
-        "accuracy/laws.json",
-        R"([{"problem": "P", "law": "penalties", "error at most": 0.01, "least time": "heun, fixed",
-               "seconds": 0.00125},
+    write("accuracy/laws.json",
+          R"([{"problem": "P", "law": "penalties", "error at most": 0.01,
+               "least time": "heun, fixed", "seconds": 0.00125},
               {"problem": "P", "law": "penalties", "error at most": 1e-6,
                "least time": "none reaches it", "seconds": null},
               {"problem": "P", "law": "projection", "error at most": 0.01,
@@ -108,118 +115,100 @@ class Results {
                "SPlisHSPlasH [s/s]": 10, "SPlisHSPlasH / vat": 4.125,
                "density error of vat [%]": 0.25, "cpu": "C", "cores": 2}])");
     write("accuracy/P-time.svg", "<svg></svg>");
-    write("page/page.md", kEmptyPage);
   }
 
-  Status document() const { return write_document(folder_.path(), file("page/page.md")); }
   std::string file(const std::string& name) const { return folder_.file(name); }
-  void write(const std::string& name, const std::string& text) const {
-    fs::create_directories(fs::path(file(name)).parent_path());
-    std::ofstream(file(name)) << text;
+  void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
+  /// Fills the page, which has the text. Returns the page.
+  Result<std::string> fill(const std::string& text) const {
+    write("page/page.md", text);
+    const Status done = write_document(folder_.path(), file("page/page.md"));
+    if (!done) return done.errors();
+    return read_file(file("page/page.md"));
   }
-
-  static constexpr const char* kEmptyPage =
-      "<!-- begin cases -->\n<!-- end cases -->\n<!-- begin limits -->\n<!-- end limits -->\n"
-      "<!-- begin solvers -->\n<!-- end solvers -->\n"
-      "<!-- begin tolerances -->\n<!-- end tolerances -->\n"
-      "<!-- begin methods -->\n<!-- end methods -->\n<!-- begin steps -->\n<!-- end steps -->\n"
-      "<!-- begin laws -->\n<!-- end laws -->\n"
-      "<!-- begin counts -->\n<!-- end counts -->\n![P](figures/P-time.svg)\n";
 
  private:
   TemporaryFolder folder_;
 };
 
-TEST(BenchDocument, WritesTablesAndCopiesPictures) {
-  const Results results;
-  const Status done = results.document();
-  ASSERT_TRUE(done) << done.errors()[0].path << done.errors()[0].message;
+std::string with_marker(const std::string& marker, const std::string& content) {
+  return "<!-- begin " + marker + " -->\n" + content + "<!-- end " + marker + " -->\n";
+}
+
+TEST(BenchDocument, FillsEachTableWithItsResults) {
   const std::string title = validation::all_cases().front().title;
-  EXPECT_EQ(read_file(results.file("page/page.md")),
-            "<!-- begin cases -->\n"
-            "| case | subject | metrics | metric closest to its tolerance | measured | reference "
-            "and tolerance |\n"
-            "|---|---|---|---|---|---|\n"
-            "| DEF-1 | " +
-                title +
-                " | 3 | y [m] | 2.75 | 2 +- 1 |\n"
-                "<!-- end cases -->\n"
-                "<!-- begin limits -->\n"
-                "| case | metric | measured | reference | cause |\n"
-                "|---|---|---|---|---|\n"
-                "| DEF-1 | z [m] | 4 | 3 | too soft |\n"
-                "<!-- end limits -->\n"
-                "<!-- begin solvers -->\n"
-                "| problem | solver | layers | error of | error | mean density error "
-                "| greatest density error | steps |\n"
-                "|---|---|---|---|---|---|---|---|\n"
-                "| dam | tait | 20 | front | 0.125 | 0.5 | 0.75 | 7 |\n"
-                "<!-- end solvers -->\n"
-                "<!-- begin tolerances -->\n"
-                "| scene | tolerance | density error | steps | iterations for velocities "
-                "| iterations for positions |\n"
-                "|---|---|---|---|---|---|\n"
-                "| dam | 0.01 | 0.005 | 7 | 1.5 | 0.25 |\n"
-                "<!-- end tolerances -->\n"
-                "<!-- begin methods -->\n"
-                "| problem | error 0.01 | error 1e-06 |\n"
-                "|---|---|---|\n"
-                "| P | heun, fixed: 100 | – |\n"
-                "<!-- end methods -->\n"
-                "<!-- begin steps -->\n"
-                "| problem | error | best fixed | evaluations | best adaptive "
-                "| adaptive: evaluations / fixed | time / fixed | local: evaluations / fixed "
-                "| time / fixed |\n"
-                "|---|---|---|---|---|---|---|---|---|\n"
-                "| P | 0.01 | heun | 100 | heun | 0.5 | 0.625 | – | – |\n"
-                "<!-- end steps -->\n"
-                "<!-- begin laws -->\n"
-                "| problem | law | error 0.01 | error 1e-06 |\n"
-                "|---|---|---|---|\n"
-                "| P | penalties | heun, fixed: 1.2 ms | – |\n"
-                "| P | projection | heun, fixed: 2 ms | heun, adaptive: 5e+02 ms |\n"
-                "<!-- end laws -->\n"
-                "<!-- begin counts -->\n"
-                "| part | scenes | not finite | aborts | outside | guard events | retries | wall "
-                "stops | stopped "
-                "| refused | faults |\n"
-                "|---|---|---|---|---|---|---|---|---|---|---|\n"
-                "| random | 30 | 0 | 0 | 0 | 5 | 6 | 0 | 0 | 0 | 0 |\n"
-                "<!-- end counts -->\n"
-                "![P](figures/P-time.svg)\n");
-  EXPECT_EQ(read_file(results.file("page/figures/P-time.svg")), "<svg></svg>");
+  const Filling fillings[] = {
+      {"summary",
+       "validate/validation.json",
+       {"| case | quantity | measured | reference and tolerance |",
+        "| " + title + " | y [m] | 2.75 | 2 +- 1 |"}},
+      {"cases",
+       "validate/validation.json",
+       {"| case | subject | metrics | metric closest to its tolerance | measured | reference and "
+        "tolerance |",
+        "| DEF-1 | " + title + " | 3 | y [m] | 2.75 | 2 +- 1 |"}},
+      {"limits",
+       "validate/validation.json",
+       {"| case | metric | measured | reference | cause |",
+        "| DEF-1 | z [m] | 4 | 3 | too soft |"}},
+      {"solvers",
+       "accuracy/solvers.json",
+       {"| problem | solver | layers | error of | error | mean density error | greatest density "
+        "error | steps |",
+        "| dam | tait | 20 | front | 0.125 | 0.5 | 0.75 | 7 |"}},
+      {"tolerances",
+       "accuracy/tolerances.json",
+       {"| scene | tolerance | density error | steps | iterations for velocities | iterations for "
+        "positions |",
+        "| dam | 0.01 | 0.005 | 7 | 1.5 | 0.25 |"}},
+      {"methods",
+       "accuracy/cheapest.json",
+       {"| problem | error 0.01 | error 1e-06 |", "| P | heun, fixed: 100 | – |"}},
+      {"steps",
+       "accuracy/control.json",
+       {"| problem | error | best fixed | evaluations | best adaptive | adaptive: evaluations / "
+        "fixed | time / fixed | local: evaluations / fixed | time / fixed |",
+        "| P | 0.01 | heun | 100 | heun | 0.5 | 0.625 | – | – |"}},
+      {"laws",
+       "accuracy/laws.json",
+       {"| problem | law | error 0.01 | error 1e-06 |",
+        "| P | penalties | heun, fixed: 1.2 ms | – |",
+        "| P | projection | heun, fixed: 2 ms | heun, adaptive: 5e+02 ms |"}},
+      {"counts",
+       "stability/stability.json",
+       {"| part | scenes | not finite | aborts | outside | guard events | retries | wall stops | "
+        "stopped | refused | faults |",
+        "| random | 30 | 0 | 0 | 0 | 5 | 6 | 0 | 0 | 0 | 0 |"}},
+      {"race",
+       "race/race.json",
+       {"| dam break | particles | threads | vat [s] | SPlisHSPlasH [s] | ratio | density error | "
+        "machine |",
+        "| 10k-tait | 10648 | 2 | 2.5 | 10 | 4.12 | 0.25 % | C, 2 cores |"}}};
+  for (const auto& [marker, file, table] : fillings) {
+    const Results results;
+    const std::string empty = with_marker(marker, "");
+    const Result<std::string> page = results.fill(empty);
+    ASSERT_TRUE(page) << marker << page.errors()[0].message;
+    std::string expected = table[0] + "\n|";
+    for (auto bars = std::ranges::count(table[0], '|'); bars > 1; --bars) expected += "---|";
+    for (std::size_t row = 1; row < table.size(); ++row) expected += '\n' + table[row];
+    EXPECT_EQ(page.value(), with_marker(marker, expected + '\n'));
+    // Without its result, nothing changes.
+    fs::remove(results.file(file));
+    const std::string command = std::string(file).substr(0, std::string(file).find('/'));
+    const Result<std::string> failed = results.fill(empty);
+    ASSERT_FALSE(failed) << marker;
+    EXPECT_THAT(failed.errors()[0].message, HasSubstr("./vat bench " + command + " writes it"));
+    EXPECT_EQ(read_file(results.file("page/page.md")), empty);
+  }
 }
 
-TEST(BenchDocument, FillsOnlyTheMarkersOfThePage) {
+TEST(BenchDocument, CopiesItsPicturesOnly) {
   const Results results;
-  results.write("page/page.md",
-                "<!-- begin summary -->\n<!-- end summary -->\n<!-- begin race -->\n"
-                "<!-- end race -->\n![A](web/a.webp)\n");
-  ASSERT_TRUE(results.document());
-  EXPECT_EQ(read_file(results.file("page/page.md")),
-            "<!-- begin summary -->\n"
-            "| case | quantity | measured | reference and tolerance |\n"
-            "|---|---|---|---|\n"
-            "| " +
-                validation::all_cases().front().title +
-                " | y [m] | 2.75 | 2 +- 1 |\n"
-                "<!-- end summary -->\n"
-                "<!-- begin race -->\n"
-                "| dam break | particles | threads | vat [s] | SPlisHSPlasH [s] | ratio "
-                "| density error | machine |\n"
-                "|---|---|---|---|---|---|---|---|\n"
-                "| 10k-tait | 10648 | 2 | 2.5 | 10 | 4.12 | 0.25 % | C, 2 cores |\n"
-                "<!-- end race -->\n![A](web/a.webp)\n");
-}
-
-TEST(BenchDocument, ReadmeHasTheMarkersOfItsTables) {
-  const std::string page = read_file(fs::path(VAT_SOURCE_DIR) / "README.md");
-  EXPECT_TRUE(fill_markers(page, {{"summary", ""}, {"race", ""}}));
-}
-
-TEST(BenchDocument, ReliabilityHasTheMarkerOfItsTable) {
-  const std::string page = read_file(fs::path(VAT_SOURCE_DIR) / "server/RELIABILITY.md");
-  EXPECT_TRUE(fill_markers(page, {{"durability", ""}, {"faults", ""}, {"recovery", ""}}));
+  const std::string text = "![P](figures/P-time.svg) ![A](web/a.webp)\n";
+  EXPECT_EQ(results.fill(text).value(), text);
+  EXPECT_EQ(read_file(results.file("page/figures/P-time.svg")), "<svg></svg>");
+  EXPECT_FALSE(fs::exists(results.file("page/web/a.webp")));
 }
 
 TEST(BenchDocument, TablesOfReliabilityHaveTheFiguresOfTheirResults) {
@@ -234,29 +223,22 @@ TEST(BenchDocument, TablesOfReliabilityHaveTheFiguresOfTheirResults) {
               HasSubstr("| lost commands | 0 | 0 | C, 2 cores |"));
 }
 
-TEST(BenchDocument, MissingResultChangesNothing) {
-  const Results results;
-  fs::remove(results.file("stability/stability.json"));
-  const Status done = results.document();
-  ASSERT_FALSE(done);
-  EXPECT_THAT(done.errors()[0].message, HasSubstr("./vat bench stability writes it"));
-  EXPECT_EQ(read_file(results.file("page/page.md")), Results::kEmptyPage);
-}
-
-TEST(BenchDocument, PageHasEveryMarkerFigureAndCase) {
-  const std::string page = read_file(kPage);
-  const std::string others = read_file(fs::path(VAT_SOURCE_DIR) / "README.md") +
-                             read_file(fs::path(VAT_SOURCE_DIR) / "server/RELIABILITY.md");
-  std::map<std::string, std::string> contents;
-  for (const std::string& marker : document_markers()) {
-    if (has_marker(page, marker)) {
-      contents[marker] = "";
-    } else {
-      EXPECT_TRUE(has_marker(others, marker)) << marker;
+// Each marker is on one page, which has no other markers.
+TEST(BenchDocument, PagesHaveEveryMarkerFigureAndCase) {
+  std::set<std::string> found;
+  for (const char* name : {"core/ACCURACY.md", "README.md", "server/RELIABILITY.md"}) {
+    const std::string page = read_file(fs::path(VAT_SOURCE_DIR) / name);
+    std::map<std::string, std::string> contents;
+    for (const std::string& marker : document_markers()) {
+      if (has_marker(page, marker)) contents[marker] = "";
+      if (has_marker(page, marker)) found.insert(marker);
     }
+    const Result<std::string> filled = fill_markers(page, contents);
+    EXPECT_TRUE(filled) << name << filled.errors()[0].path << ' ' << filled.errors()[0].message;
   }
-  const Result<std::string> filled = fill_markers(page, contents);
-  EXPECT_TRUE(filled) << filled.errors()[0].path << ' ' << filled.errors()[0].message;
+  const std::vector<std::string> markers = document_markers();
+  EXPECT_EQ(found, std::set<std::string>(markers.begin(), markers.end()));
+  const std::string page = read_file(kPage);
   EXPECT_GE(pictures_of(page).size(), 6u);
   constexpr std::uintmax_t kLargest = 160'000;  // bytes
   for (const std::string& picture : pictures_of(page)) {

@@ -55,11 +55,7 @@ TEST(BenchFanout, RatiosOfQuantilesHaveAnIntervalByWholeSegments) {
 
 // One viewer at the scene's rate. Other work on the machine can only reduce the rate.
 TEST(BenchFanout, CountsTheFramesOfAViewer) {
-  const TemporaryFolder folder;
-  const ProgramResult result =
-      run_bench({"fanout", "--quick", "--case", "viewers-1", "--output", folder.path().string()});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  const Table table = read_csv((folder.path() / "fanout.csv").string());
+  const Table table = bench_table("fanout", {"fanout", "--quick", "--case", "viewers-1"});
   ASSERT_EQ(table.rows.size(), 1U);
   const double rate = table.number(0, "frames per second");
   EXPECT_GT(rate, 0);
@@ -69,11 +65,8 @@ TEST(BenchFanout, CountsTheFramesOfAViewer) {
 }
 
 TEST(BenchSeeks, GoesToMomentsOfARecording) {
-  const TemporaryFolder folder;
-  const ProgramResult result = run_bench({"seeks", "--ticks", "150", "--seeks", "5", "--scene",
-                                          "water-drop", "--output", folder.path().string()});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  const Table table = read_csv((folder.path() / "seeks.csv").string());
+  const Table table =
+      bench_table("seeks", {"seeks", "--ticks", "150", "--seeks", "5", "--scene", "water-drop"});
   ASSERT_EQ(table.rows.size(), 1U);
   EXPECT_EQ(table.number(0, "ticks"), 150);
   EXPECT_EQ(table.number(0, "seeks"), 5);
@@ -86,18 +79,13 @@ TEST(BenchSeeks, GoesToMomentsOfARecording) {
 
 TEST(BenchSeeks, ReportsARefusalOfTheServer) {
   const TemporaryFolder folder;
-  const ProgramResult result =
-      run_bench({"seeks", "--scene", "gone", "--output", folder.path().string()});
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(result.err, testing::HasSubstr("gone"));
+  EXPECT_THAT(run_bench({"seeks", "--scene", "gone", "--output", folder.path().string()}),
+              exits(1, HasSubstr("gone")));
 }
 
 TEST(BenchDurability, MeasuresEachDurability) {
-  const TemporaryFolder folder;
-  const ProgramResult result = run_bench(
-      {"durability", "--sessions", "2", "--seconds", "1", "--output", folder.path().string()});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  const Table table = read_csv((folder.path() / "durability.csv").string());
+  const Table table =
+      bench_table("durability", {"durability", "--sessions", "2", "--seconds", "1"});
   ASSERT_EQ(table.rows.size(), 3U);
   for (std::size_t row = 0; row < 3; ++row) {
     EXPECT_EQ(table.number(row, "commands"), 40);
@@ -108,12 +96,8 @@ TEST(BenchDurability, MeasuresEachDurability) {
 }
 
 TEST(BenchRecovery, KillsAServerAndMeasuresItsRecovery) {
-  const TemporaryFolder folder;
-  const ProgramResult result =
-      run_bench({"recovery", "--particles", "400", "--kills", "1", "--warm-up", "0", "--seconds",
-                 "1", "--output", folder.path().string()});
-  ASSERT_EQ(result.exit_code, 0) << result.out << result.err;
-  const Table table = read_csv((folder.path() / "recovery.csv").string());
+  const Table table = bench_table("recovery", {"recovery", "--particles", "400", "--kills", "1",
+                                               "--warm-up", "0", "--seconds", "1"});
   ASSERT_EQ(table.rows.size(), 1U);
   EXPECT_EQ(table.number(0, "kills"), 1);
   EXPECT_GT(table.number(0, "ticks per second"), 0);
@@ -168,13 +152,9 @@ TEST(BenchSoak, DistinguishesLeaksFromSwings) {
 
 // A short version of the ten-minute run in tests/bench/README.md.
 TEST(BenchSoak, ServerSurvivesAllKindsOfClients) {
-  const TemporaryFolder folder;
-  const ProgramResult result =
-      run_bench({"soak", "--seconds", "10", "--output", folder.path().string()});
-  ASSERT_EQ(result.exit_code, 0) << result.out << result.err;
-  const Table table = read_csv((folder.path() / "soak.csv").string());
+  const Table table = bench_table("soak", {"soak", "--seconds", "10"});
   for (const char* manner : {"joins", "answered", "frames", "rubbish", "flood", "stalls"}) {
-    EXPECT_GT(table.number(0, manner), 20) << manner << '\n' << result.out;
+    EXPECT_GT(table.number(0, manner), 20) << manner;
   }
 }
 

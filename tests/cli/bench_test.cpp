@@ -34,12 +34,8 @@ TEST(BenchSpeed, RowsAreConsistent) {
 }
 
 TEST(BenchSpeed, StagesAndTheRestAreTheWholeStep) {
-  const TemporaryFolder folder;
-  const ProgramResult result =
-      run_bench({"speed", "--quick", "--threads", "1", "--output", folder.file("results"), "--case",
-                 "dam-break-1k-incompressible"});
-  ASSERT_EQ(result.exit_code, 0) << result.err;
-  const Table table = read_csv(folder.file("results/stages.csv"));
+  const Table table = bench_table(
+      "stages", {"speed", "--quick", "--threads", "1", "--case", "dam-break-1k-incompressible"});
   double share = 0;
   std::vector<std::string> names;
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
@@ -51,26 +47,11 @@ TEST(BenchSpeed, StagesAndTheRestAreTheWholeStep) {
   EXPECT_THAT(names, testing::IsSupersetOf({"sort_liquid", "project_velocities", "rest"}));
 }
 
-TEST(BenchSpeed, ListedCasesAreThoseThatAnErrorNames) {
-  const ProgramResult list = run_bench({"speed", "--list"});
-  EXPECT_EQ(list.exit_code, 0);
-  const ProgramResult unknown = run_bench({"speed", "--case", "dam-break"});
-  EXPECT_EQ(unknown.exit_code, 1);
-  for (const std::string& name : lines_of(list.out)) {
-    EXPECT_THAT(unknown.err, testing::HasSubstr(' ' + name));
-  }
-}
-
-TEST(BenchSpeed, FailedRunIsAnError) {
-  const ProgramResult result = run_bench({"speed", "--quick", test_scene("unstable")});
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(result.err, testing::HasSubstr("unstable.json/bodies/1: a step failed"));
-}
-
-TEST(BenchSpeed, UnknownSceneListsTheCatalogue) {
-  const ProgramResult result = run_bench({"speed", "atlantis"});
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(result.err, testing::HasSubstr("atlantis: is not in the catalogue, which has"));
+TEST(BenchSpeed, FailedRunsAndUnknownScenesAreErrors) {
+  EXPECT_THAT(run_bench({"speed", "--quick", test_scene("unstable")}),
+              exits(1, testing::HasSubstr("unstable.json/bodies/1: a step failed")));
+  EXPECT_THAT(run_bench({"speed", "atlantis"}),
+              exits(1, testing::HasSubstr("atlantis: is not in the catalogue, which has")));
 }
 
 TEST(BenchUsage, WrongWordsAreNamed) {
@@ -85,20 +66,20 @@ TEST(BenchUsage, WrongWordsAreNamed) {
       {{"validate", "--case"}, "--case"},
   };
   for (const auto& [arguments, named] : wrong) {
-    const ProgramResult result = run_bench(arguments);
-    EXPECT_EQ(result.exit_code, 2) << named;
-    EXPECT_THAT(result.err, testing::HasSubstr(named));
+    EXPECT_THAT(run_bench(arguments), exits(2, testing::HasSubstr(named)));
   }
 }
 
-TEST(BenchValidate, ListedCasesAreThoseThatAnErrorNames) {
-  const ProgramResult list = run_bench({"validate", "--list"});
-  EXPECT_EQ(list.exit_code, 0);
-  const ProgramResult unknown = run_bench({"validate", "--case", "DEF-99"});
-  EXPECT_EQ(unknown.exit_code, 1);
-  EXPECT_THAT(unknown.err, testing::StartsWith("DEF-99: there is no such case; there are"));
-  for (const std::string& name : lines_of(list.out)) {
-    EXPECT_THAT(unknown.err, testing::HasSubstr(' ' + name));
+TEST(BenchUsage, ListedCasesAreThoseThatAnErrorNames) {
+  for (const char* command : {"speed", "validate"}) {
+    const ProgramResult list = run_bench({command, "--list"});
+    EXPECT_EQ(list.exit_code, 0);
+    const ProgramResult unknown = run_bench({command, "--case", "DEF-99"});
+    EXPECT_EQ(unknown.exit_code, 1);
+    EXPECT_THAT(unknown.err, testing::StartsWith("DEF-99: there is no such case; there are"));
+    for (const std::string& name : lines_of(list.out)) {
+      EXPECT_THAT(unknown.err, testing::HasSubstr(' ' + name));
+    }
   }
 }
 
@@ -123,11 +104,7 @@ TEST(BenchValidate, TableIsWrittenThreeTimes) {
 }
 
 TEST(Bench, OutputMeasuresEachFormat) {
-  const TemporaryFolder folder;
-  const ProgramResult result =
-      run_bench({"output", "--case", "dam-break-1k", "--output", folder.file("results")});
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  const Table table = read_csv(folder.file("results/output.csv"));
+  const Table table = bench_table("output", {"output", "--case", "dam-break-1k"});
   ASSERT_EQ(table.rows.size(), 7u);
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     EXPECT_GT(table.number(row, "write [ms]"), 0);

@@ -64,9 +64,8 @@ TEST(Convert, RefusesWrongFiles) {
        {std::vector<std::string>{"convert"}, {"convert", "none.json"}, {"convert", scene, "out"}}) {
     EXPECT_EQ(run_vat(arguments).exit_code, 2);
   }
-  const ProgramResult same = run_vat({"convert", scene, scene});
-  EXPECT_EQ(same.exit_code, 2);
-  EXPECT_THAT(same.err, HasSubstr("must not be the converted file"));
+  EXPECT_THAT(run_vat({"convert", scene, scene}),
+              exits(2, HasSubstr("must not be the converted file")));
 }
 
 }  // namespace

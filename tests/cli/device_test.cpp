@@ -105,10 +105,8 @@ TEST(DeviceCommand, RefusesDevicesAndScenes) {
   };
   for (const Case& one : {Case{kDamBreak, "opencl:99", "/device: opencl:99 does not exist"},
                           Case{test_scene("mixed"), "opencl", "/bodies/1/kind: must be liquid"}}) {
-    const ProgramResult result =
-        run_vat({"simulate", one.scene, "--until", "0.02", "--device", one.device});
-    EXPECT_EQ(result.exit_code, 1);
-    EXPECT_THAT(result.err, HasSubstr(one.message));
+    EXPECT_THAT(run_vat({"simulate", one.scene, "--until", "0.02", "--device", one.device}),
+                exits(1, HasSubstr(one.message)));
   }
 }
 

@@ -224,17 +224,6 @@ TEST(ExactOutput, DiagnosticsOfAnIncompressibleLiquid) {
   EXPECT_EQ(table.number(2, "column.z"), now.bodies[0].center_of_mass.z());
 }
 
-TEST(ExactOutput, Hash) {
-  Simulation simulation = reference();
-  simulation.advance(120);
-  std::string expected = "hash ";
-  append_hash(expected, simulation.state_hash());
-  expected += std::string(" ") + to_string(simulation.instruction_set()) + '\n';
-  const ProgramResult result =
-      run_vat({"simulate", test_scene("mixed"), "--until", "0.12", "--hash"});
-  EXPECT_EQ(result.out, expected);
-}
-
 TEST(ExactOutput, HashAndProfileNameTheInstructionSet) {
   for (const char* name : {"baseline", "avx2", "avx512"}) {
     const InstructionSet set = parse_instruction_set(name).value();

@@ -63,15 +63,25 @@ TEST(Output, FullDiskForDiagnosticsIsAnError) {
   EXPECT_THAT(lines_of(result.err), ElementsAre(file + ": cannot be written: File too large"));
 }
 
-TEST(Output, FolderInPlaceOfAFileIsAnError) {
+constexpr const char* kFiles[] = {"run.csv", "run.npy", "run.npz", "run.pvd",
+                                  "run.ply", "run.glb", "run.abc"};
+
+TEST(Output, FilesThatCannotBeCreatedAreErrors) {
   const TemporaryFolder folder;
-  for (const char* name :
-       {"run.csv", "run.npy", "run.npz", "run.pvd", "run.ply", "run.glb", "run.abc"}) {
-    std::filesystem::create_directory(folder.file(name));
+  const auto message = [&](const char* option, const std::string& file) {
     const ProgramResult result =
-        run_vat({"simulate", test_scene("pair"), "--until", "0", "--output", folder.file(name)});
-    EXPECT_EQ(result.exit_code, 1);
-    EXPECT_THAT(result.err, StartsWith(folder.file(name) + ": cannot be created: Is a directory"));
+        run_vat({"simulate", test_scene("pair"), "--until", "0", option, folder.file(file)});
+    EXPECT_EQ(result.exit_code, 1) << file;
+    return result.err;
+  };
+  for (const char* name : kFiles) {
+    std::filesystem::create_directory(folder.file(name));
+    EXPECT_THAT(message("--output", name),
+                StartsWith(folder.file(name) + ": cannot be created: Is a directory"));
+  }
+  for (const char* option : {"--output", "--diagnostics"}) {
+    EXPECT_THAT(message(option, "missing/run.csv"),
+                StartsWith(folder.file("missing/run.csv") + ": cannot be created: No such file"));
   }
 }
 
@@ -93,8 +103,7 @@ TEST(Output, SceneWithoutBodiesHasNoRows) {
   const TemporaryFolder folder;
   const std::string scene = folder.file("empty.json");
   std::ofstream(scene) << R"({"format": "vat.scene/1", "materials": [], "bodies": []})";
-  for (const char* name :
-       {"run.csv", "run.npy", "run.npz", "run.pvd", "run.ply", "run.glb", "run.abc"}) {
+  for (const char* name : kFiles) {
     const ProgramResult result =
         run_vat({"simulate", scene, "--until", "0", "--output", folder.file(name), "--diagnostics",
                  folder.file("d.csv")});
@@ -122,10 +131,8 @@ TEST(Output, MissingFolderIsAnError) {
   const TemporaryFolder folder;
   for (const char* option : {"--output", "--diagnostics"}) {
     const std::string file = folder.file("missing/run.csv");
-    const ProgramResult result =
-        run_vat({"simulate", test_scene("pair"), "--until", "0.02", option, file});
-    EXPECT_EQ(result.exit_code, 1);
-    EXPECT_THAT(result.err, StartsWith(file + ": cannot be created: No such file or directory"));
+    EXPECT_THAT(run_vat({"simulate", test_scene("pair"), "--until", "0.02", option, file}),
+                exits(1, StartsWith(file + ": cannot be created: No such file or directory")));
   }
 }
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <gmock/gmock.h>
+
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -12,6 +15,17 @@ struct ProgramResult {
   std::string out;
   std::string err;
 };
+
+inline void PrintTo(const ProgramResult& result, std::ostream* out) {
+  *out << "exit code " << result.exit_code << '\n' << result.out << result.err;
+}
+
+/// Matches a program that exited with this code and a matching text on standard error.
+template <class Message>
+auto exits(int code, const Message& message) {
+  return testing::AllOf(testing::Field("exit_code", &ProgramResult::exit_code, code),
+                        testing::Field("err", &ProgramResult::err, message));
+}
 
 /// Runs the built program to its end.
 ProgramResult run_vat(const std::vector<std::string>& arguments);

@@ -107,6 +107,13 @@ Table read_csv(const std::string& path) {
   return table;
 }
 
+Table bench_table(const std::string& name, std::vector<std::string> arguments) {
+  const TemporaryFolder folder;
+  arguments.insert(arguments.end(), {"--output", folder.path().string()});
+  EXPECT_THAT(run_bench(arguments), exits(0, testing::_));
+  return read_csv(folder.file(name + ".csv"));
+}
+
 Array read_npy(const std::string& path) {
   const std::string file = read_file(path);
   std::string_view bytes = file;

@@ -20,6 +20,10 @@ struct Table {
 };
 Table read_csv(const std::string& path);
 
+/// Runs `vat bench` with these arguments, and returns its table of this name. Fails the test if the
+/// exit code is not 0.
+Table bench_table(const std::string& name, std::vector<std::string> arguments);
+
 /// A NumPy array of float64.
 struct Array {
   std::vector<std::size_t> shape;

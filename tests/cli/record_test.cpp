@@ -1,4 +1,4 @@
-// `vat record` and `vat export`: interrupted recordings continue with the same bytes.
+// `vat record`: interrupted recordings continue with the same bytes.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -64,23 +64,9 @@ TEST(Record, WithoutAStateIsNotResumed) {
   ASSERT_EQ(run_vat(recording(name, "0.1")).exit_code, 0);
   std::vector<std::string> arguments = recording(name, "0.2");
   arguments.emplace_back("--resume");
-  const ProgramResult result = run_vat(arguments);
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(result.err, HasSubstr("only an interrupted recording can be resumed"));
+  EXPECT_THAT(run_vat(arguments),
+              exits(1, HasSubstr("only an interrupted recording can be resumed")));
   EXPECT_THAT(folder.names(), ElementsAre("a.vatrec"));
-}
-
-TEST(Export, WritesAPage) {
-  const TemporaryFolder folder;
-  folder.write("web/export/page.html", "@TITLE@ @PARTS@");
-  folder.write("web/export/player.js.gz", "program");
-  const std::string name = folder.file("a.vatrec");
-  ASSERT_EQ(run_vat(recording(name, "0.1")).exit_code, 0);
-  const std::string page = folder.file("a.html");
-  const ProgramResult result =
-      run_vat({"export", name, "--html", page, "--web", folder.file("web")});
-  EXPECT_EQ(result.exit_code, 0) << result.err;
-  EXPECT_THAT(read_file(page), HasSubstr("vat.end\n"));
 }
 
 }  // namespace

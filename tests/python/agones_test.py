@@ -61,16 +61,18 @@ class Sidecar:
 
 
 class Agones(unittest.TestCase):
-    def start(self, **settings):
+    def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         (Path(folder.name) / "vat").symlink_to(PROGRAM)
         self.port, self.sidecar_port = free_port(), free_port()
-        environment = {**os.environ, **settings, "PATH": f"{folder.name}:{os.environ['PATH']}",
-                       "VAT_PORT": str(self.port), "VAT_LOG_LEVEL": "warn",
-                       "AGONES_SDK_HTTP_PORT": str(self.sidecar_port)}
-        self.script = subprocess.Popen([SCRIPT, "serve"], env=environment, text=True,
-                                       stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        self.environment = {**os.environ, "PATH": f"{folder.name}:{os.environ['PATH']}",
+                            "VAT_PORT": str(self.port), "VAT_LOG_LEVEL": "warn",
+                            "AGONES_SDK_HTTP_PORT": str(self.sidecar_port)}
+
+    def start(self, **settings):
+        self.script = subprocess.Popen([SCRIPT, "serve"], env={**self.environment, **settings},
+                                       text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         self.addCleanup(self.script.communicate)
         self.addCleanup(self.script.terminate)
         while "vat is at" not in (line := self.script.stdout.readline()):
@@ -103,14 +105,9 @@ class Agones(unittest.TestCase):
         self.assertEqual(self.script.wait(ANSWER_SECONDS), 0)
 
     def test_an_invalid_option_is_the_exit_code_and_an_end(self):
-        self.sidecar_port = free_port()
         sidecar = self.start_sidecar()
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        (Path(folder.name) / "vat").symlink_to(PROGRAM)
         run = subprocess.run([SCRIPT, "serve", "--port", "no"], capture_output=True, text=True,
-                             env={**os.environ, "PATH": f"{folder.name}:{os.environ['PATH']}",
-                                  "AGONES_SDK_HTTP_PORT": str(self.sidecar_port)})
+                             env=self.environment)
         self.assertEqual(run.returncode, 2, run.stderr)
         self.assertEqual(sidecar.next(), "/shutdown")
 

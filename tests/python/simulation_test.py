@@ -43,14 +43,6 @@ class Steps(unittest.TestCase):
                 simulation.advance(0.1)
                 self.assertEqual(simulation.hash, hash_of(scene, 0.1))
 
-    def test_threads_do_not_change_the_hash(self) -> None:
-        hashes = set()
-        for threads in (1, 3):
-            simulation = vat.Simulation("dam-break", threads=threads)
-            simulation.advance(0.02)
-            hashes.add(simulation.hash)
-        self.assertEqual(len(hashes), 1)
-
     def test_free_fall(self) -> None:
         simulation = vat.Simulation(SCENE)
         report = simulation.advance(0.5)

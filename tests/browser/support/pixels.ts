@@ -32,26 +32,22 @@ async function scaledDown(viewer: Viewer, address: string): Promise<Pixels> {
   return page.evaluate(readPixels, [address, kWidth] as const);
 }
 
-/** Returns the mean red, green and blue of a region, and the standard deviation of their sum. */
+/** Returns the mean red, green and blue of a region. */
 export function statisticsOf(
   { width, height, data }: Omit<Pixels, 'png'>,
   { left, top, right, bottom }: Region,
-): { red: number; green: number; blue: number; deviation: number } {
+): { red: number; green: number; blue: number } {
   const sums = [0, 0, 0];
-  let squares = 0;
   let count = 0;
   for (let y = Math.floor(top * height); y < Math.ceil(bottom * height); ++y) {
     for (let x = Math.floor(left * width); x < Math.ceil(right * width); ++x) {
       const at = 3 * (y * width + x);
-      const parts = data.slice(at, at + 3);
-      parts.forEach((part, channel) => (sums[channel]! += part));
-      squares += parts.reduce((sum, part) => sum + part, 0) ** 2;
+      data.slice(at, at + 3).forEach((part, channel) => (sums[channel]! += part));
       ++count;
     }
   }
   const [red = 0, green = 0, blue = 0] = sums.map((sum) => sum / count);
-  const mean = red + green + blue;
-  return { red, green, blue, deviation: Math.sqrt(Math.max(squares / count - mean ** 2, 0)) };
+  return { red, green, blue };
 }
 
 /**

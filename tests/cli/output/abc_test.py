@@ -3,40 +3,20 @@
 Usage: abc_test.py VAT FOLDER_OF_SCENES CATALOGUE
 """
 
-import csv
 import pathlib
-import subprocess
 import sys
-import tempfile
 import unittest
 
 import abc_reader
 import numpy
-
-VAT, SCENES, CATALOGUE = sys.argv[1:4]
+from output_case import CATALOGUE, SCENES, OutputCase
 
 
 def columns(rows, names):
     return numpy.array([[float(row[name]) for name in names] for row in rows])
 
 
-class AbcTest(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def run_vat(self, scene, name, *options, exit_code=0):
-        file = self.folder / name
-        command = [VAT, "simulate", scene, "--output", str(file), *options]
-        result = subprocess.run(command, capture_output=True, text=True, check=False)
-        self.assertEqual(result.returncode, exit_code, result.stderr)
-        return file
-
-    def rows(self, file):
-        with file.open(newline="") as table:
-            return list(csv.DictReader(table))
-
+class AbcTest(OutputCase):
     def bodies(self, scene, *options):
         """Returns the objects of the bodies, the rows of the particles, and the archive."""
         archive = abc_reader.Archive(self.run_vat(scene, "run.abc", *options))

@@ -3,42 +3,23 @@
 Usage: npz_test.py VAT FOLDER_OF_SCENES CATALOGUE
 """
 
-import csv
-import pathlib
-import subprocess
 import sys
-import tempfile
 import unittest
 import zipfile
 
 import numpy
+from output_case import CATALOGUE, SCENES, OutputCase
 
-VAT, SCENES, CATALOGUE = sys.argv[1:4]
 SHAPES = {"time": (), "count": (), "body": (0,), "number": (0,), "position": (0, 3), "velocity": (0, 3)}
 TYPES = {"time": "<f8", "count": "<i8", "body": "<i4", "number": "<i4", "position": "<f8",
          "velocity": "<f8"}
 
 
-class NpzTest(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def run_vat(self, scene, name, *options):
-        file = self.folder / name
-        command = [VAT, "simulate", scene, "--output", str(file), *options]
-        return file, subprocess.run(command, capture_output=True, text=True, check=False)
-
+class NpzTest(OutputCase):
     def both(self, scene, *options):
         """Returns the arrays, and the rows of the table."""
-        outputs = []
-        for name in ("run.npz", "run.csv"):
-            file, result = self.run_vat(scene, name, *options)
-            self.assertEqual(result.returncode, 0, result.stderr)
-            outputs.append(file)
-        with outputs[1].open(newline="") as table:
-            return numpy.load(outputs[0]), list(csv.DictReader(table))
+        arrays = numpy.load(self.run_vat(scene, "run.npz", *options))
+        return arrays, self.rows(self.run_vat(scene, "run.csv", *options))
 
     def compare(self, arrays, rows):
         self.assertEqual({name: arrays[name].dtype.str for name in arrays.files}, TYPES)
@@ -78,15 +59,14 @@ class NpzTest(unittest.TestCase):
     def test_archive_is_intact_and_the_same_in_each_run(self):
         contents = []
         for name in ("a.npz", "b.npz"):
-            file, _ = self.run_vat(f"{SCENES}/pair.json", name, "--until", "0.1")
+            file = self.run_vat(f"{SCENES}/pair.json", name, "--until", "0.1")
             self.assertIsNone(zipfile.ZipFile(file).testzip())
             contents.append(file.read_bytes())
         self.assertEqual(*contents)
 
     def test_failed_run_leaves_its_outputs(self):
-        file, result = self.run_vat(f"{SCENES}/unstable.json", "run.npz", "--until", "1", "--every",
-                                    "0.001")
-        self.assertEqual(result.returncode, 1)
+        file = self.run_vat(f"{SCENES}/unstable.json", "run.npz", "--until", "1", "--every", "0.001",
+                            exit_code=1)
         self.assertFalse(file.exists())
         with open(f"{file}.part", "rb") as part:
             arrays = numpy.load(part)

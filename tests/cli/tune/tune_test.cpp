@@ -87,10 +87,8 @@ TEST(Tune, WritesTheChoiceAndCheaperPointsForTheGovernor) {
 
 TEST(Tune, AFrontWithoutCheaperPointsFails) {
   const TemporaryFolder folder;
-  const ProgramResult result =
-      run_vat(tune_pair({"--error", "1", "--front", folder.file("front.json")}));
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(result.err, HasSubstr("no completed candidate of the same solver is faster"));
+  EXPECT_THAT(run_vat(tune_pair({"--error", "1", "--front", folder.file("front.json")})),
+              exits(1, HasSubstr("no completed candidate of the same solver is faster")));
   EXPECT_THAT(folder.names(), IsEmpty());
 }
 
@@ -102,10 +100,8 @@ TEST(Tune, ChoosesForRealTime) {
 
 TEST(Tune, UnreachedErrorsFailAndWriteNothing) {
   const TemporaryFolder folder;
-  const ProgramResult result =
-      run_vat(tune_pair({"--error", "1e-9", "--write", folder.file("out.json")}));
-  EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(result.err, HasSubstr("no candidate has an error of at most 1e-09"));
+  EXPECT_THAT(run_vat(tune_pair({"--error", "1e-9", "--write", folder.file("out.json")})),
+              exits(1, HasSubstr("no candidate has an error of at most 1e-09")));
   EXPECT_THAT(folder.names(), IsEmpty());
 }
 
@@ -150,9 +146,7 @@ TEST(Tune, RefusesWrongOptions) {
            {{"--error", "0"}, "--error"},
            {{"--until", "2000"}, "--until"},
            {{"--repetitions", "0"}, "--repetitions"}}) {
-    const ProgramResult result = run_vat(tune_pair(options));
-    EXPECT_EQ(result.exit_code, 2) << named;
-    EXPECT_THAT(result.err, HasSubstr(named));
+    EXPECT_THAT(run_vat(tune_pair(options)), exits(2, HasSubstr(named)));
   }
   const ProgramResult broken = run_vat({"tune", test_scene("broken")});
   EXPECT_EQ(broken.exit_code, 1);

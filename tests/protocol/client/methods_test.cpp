@@ -94,10 +94,5 @@ TEST(ClientMethods, NameTheInvalidMember) {
             "/bodies/0/positions/0 needs 3 numbers");
 }
 
-TEST(ClientMethods, HaveTheNamesOfTheProtocol) {
-  EXPECT_STREQ(ControlStep::kName, "control.step");
-  EXPECT_STREQ(SessionDeleteSave::kName, "session.delete_save");
-}
-
 }  // namespace
 }  // namespace vat::client::methods_test

@@ -7,35 +7,30 @@
 namespace vat::client::websocket_url_test {
 namespace {
 
-TEST(WebSocketUrl, HasADefaultPortAndPath) {
-  const WebSocketUrl url = read_websocket_url("ws://example.org");
-  EXPECT_EQ(url.host, "example.org");
-  EXPECT_EQ(url.port, "80");
-  EXPECT_EQ(url.path, "/ws");
-  EXPECT_EQ(url.authority(), "example.org:80");
-  EXPECT_EQ(read_websocket_url("ws://example.org/").path, "/ws");
-}
-
-TEST(WebSocketUrl, NamesPortAndPath) {
-  const WebSocketUrl url = read_websocket_url("ws://127.0.0.1:8080/behind/proxy");
-  EXPECT_EQ(url.host, "127.0.0.1");
-  EXPECT_EQ(url.port, "8080");
-  EXPECT_EQ(url.path, "/behind/proxy");
-}
-
-TEST(WebSocketUrl, AddressesOfIpv6StandInBrackets) {
-  const WebSocketUrl url = read_websocket_url("ws://[::1]:9/ws");
-  EXPECT_EQ(url.host, "::1");
-  EXPECT_EQ(url.port, "9");
-  EXPECT_EQ(url.authority(), "[::1]:9");
-}
-
-TEST(WebSocketUrl, IsSecureByItsScheme) {
-  EXPECT_FALSE(read_websocket_url("ws://example.org:443").is_secure);
-  const WebSocketUrl url = read_websocket_url("wss://example.org");
-  EXPECT_TRUE(url.is_secure);
-  EXPECT_EQ(url.authority(), "example.org:443");
-  EXPECT_EQ(read_websocket_url("wss://example.org:8080/there").authority(), "example.org:8080");
+TEST(WebSocketUrl, HasHostPortPathAndScheme) {
+  struct Case {
+    const char* text;
+    const char* host;
+    const char* port;
+    const char* path;
+    const char* authority;
+    bool is_secure = false;
+  };
+  for (const auto& [text, host, port, path, authority, is_secure] :
+       {Case{"ws://example.org", "example.org", "80", "/ws", "example.org:80"},
+        Case{"ws://example.org/", "example.org", "80", "/ws", "example.org:80"},
+        Case{"ws://127.0.0.1:8080/a/b", "127.0.0.1", "8080", "/a/b", "127.0.0.1:8080"},
+        Case{"ws://[::1]:9/ws", "::1", "9", "/ws", "[::1]:9"},
+        Case{"ws://example.org:443", "example.org", "443", "/ws", "example.org:443"},
+        Case{"wss://example.org", "example.org", "443", "/ws", "example.org:443", true},
+        Case{"wss://a.b:8080/c", "a.b", "8080", "/c", "a.b:8080", true}}) {
+    const WebSocketUrl url = read_websocket_url(text);
+    EXPECT_EQ(url.host, host) << text;
+    EXPECT_EQ(url.port, port) << text;
+    EXPECT_EQ(url.path, path) << text;
+    EXPECT_EQ(url.authority(), authority) << text;
+    EXPECT_EQ(url.is_secure, is_secure) << text;
+  }
 }
 
 TEST(WebSocketUrl, RefusesInvalidUrls) {

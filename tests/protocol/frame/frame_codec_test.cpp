@@ -1,12 +1,10 @@
 #include <gtest/gtest.h>
 
 #include <deque>
-#include <limits>
 #include <random>
 #include <set>
 
 #include "protocol/frame/rans.h"
-#include "protocol/frame/residual_tables.h"
 #include "tests/protocol/frame/frame_limit_cases.h"
 #include "tests/support/memory/allocation_counter.h"
 
@@ -59,36 +57,6 @@ TEST(Rans, DecodesTheEncodedSymbols) {
   EXPECT_NEAR(8.0 * static_cast<double>(bytes.size()), bits, 3 * 31 + bits / 1000);
 }
 
-// The tables are those of a logistic distribution around the middle of the symbol. Each frequency
-// may differ by the 4096th reserved for its symbol, by the total of these reserves, and by rounding
-// of the table's steps.
-TEST(ResidualTables, AreLogistic) {
-  for (std::uint32_t t = 0; t < residuals::kTables; ++t) {
-    const double scale = 0.045 * std::pow(2, static_cast<double>(t) / 4);
-    for (std::uint32_t place = 0; place < residuals::kPlaces; ++place) {
-      const auto index = residuals::Tables::index(t, place == 1);
-      const int radius = residuals::kAllTables.radius[index];
-      const double middle = place == 0 ? 0.125 : 0.375;
-      std::uint32_t start = 0;
-      for (int r = -radius; r <= radius + 1; ++r) {
-        const int symbol = r + radius;
-        const std::uint32_t range =
-            residuals::kAllTables.range[index][static_cast<std::size_t>(symbol)];
-        const std::uint32_t frequency = range >> 16;
-        ASSERT_EQ(range & 0xffff, start);
-        ASSERT_GE(frequency, 1U);
-        start += frequency;
-        if (r > radius) continue;  // the escape symbol has the remainder
-        const auto below = [&](double x) { return 1 / (1 + std::exp((middle - x) / scale)); };
-        const double cases = 4096 * (below(r + 0.5) - below(r - 0.5));
-        const double taken = cases * (2 * radius + 2) / 4096;
-        EXPECT_NEAR(frequency, cases, 2 + taken + 8) << t << ' ' << place << ' ' << r;
-      }
-      EXPECT_EQ(start, rans::kScale);
-    }
-  }
-}
-
 TEST(FrameCodec, EveryPrefixIsTruncated) {
   for (const Stream& stream : all_streams()) {
     for (std::size_t i = 0; i < stream.size(); ++i) {
@@ -99,19 +67,6 @@ TEST(FrameCodec, EveryPrefixIsTruncated) {
             << stream[i].name << " cut to " << size;
       }
       EXPECT_TRUE(decoder.decode(bytes).ok()) << "a rejected frame must not change the decoder";
-    }
-  }
-}
-
-TEST(FrameCodec, EveryExtraByteIsRefused) {
-  for (const Stream& stream : all_streams()) {
-    for (std::size_t i = 0; i < stream.size(); ++i) {
-      FrameDecoder decoder = decoder_after(stream, i);
-      std::vector<std::uint8_t> bytes = encode(stream, i);
-      for (int count = 1; count <= 3; ++count) {
-        bytes.push_back(static_cast<std::uint8_t>(37 * count));
-        EXPECT_EQ(code_of(decoder.decode(bytes)), "extra_bytes") << stream[i].name;
-      }
     }
   }
 }
@@ -140,33 +95,6 @@ TEST(FrameCodec, NoFlippedBitOfTheBlocksChangesThem) {
   }
 }
 
-TEST(FrameCodec, AWrongBaseIsRefused) {
-  const Stream stream = moving_stream();
-  EXPECT_EQ(code_of(FrameDecoder().decode(encode(stream, 1))), "missing_reference");
-  FrameDecoder one = decoder_after(stream, 1);
-  EXPECT_EQ(code_of(one.decode(encode(stream, 2))), "missing_reference");
-  // The same number and epoch in another session.
-  World other(64, 77);
-  other.advance(5);
-  PublishedState state = other.state();
-  state.header.number = 10;
-  FrameDecoder wrong;
-  ASSERT_TRUE(wrong.decode(encode_key_frame(on_grid(state, plain_scale()))).ok());
-  EXPECT_FALSE(wrong.decode(encode(stream, 1)).ok());
-  state.header.epoch = 3;
-  ASSERT_TRUE(wrong.decode(encode_key_frame(on_grid(state, plain_scale()))).ok());
-  EXPECT_EQ(code_of(wrong.decode(encode(stream, 1))), "missing_reference");
-}
-
-TEST(FrameCodec, AKeyFrameEndsAllReferences) {
-  const Stream stream = moving_stream();
-  FrameDecoder decoder = decoder_after(stream, 2);
-  World world;
-  world.advance(2);
-  ASSERT_TRUE(decoder.decode(encode_key_frame(on_grid(world.state(), plain_scale()))).ok());
-  EXPECT_EQ(code_of(decoder.decode(encode(stream, 2))), "missing_reference");
-}
-
 TEST(FrameCodec, ReferencesAreEarlierFramesOfOneScaleAndEpoch) {
   World world;
   const GridFrame early = on_grid(world.state(), plain_scale());
@@ -184,16 +112,6 @@ TEST(FrameCodec, ReferencesAreEarlierFramesOfOneScaleAndEpoch) {
   EXPECT_TRUE(can_refer(other, early));
   ++other.header.number;
   EXPECT_FALSE(can_refer(other, early));
-}
-
-TEST(FrameCodec, UnmovedParticlesCostNoBytes) {
-  World world(20'000);
-  const GridFrame first = on_grid(world.state(), plain_scale());
-  world.wait(1);
-  const GridFrame second = on_grid(world.state(), plain_scale());
-  EXPECT_TRUE(show_the_same(first, second));
-  FrameEncoder encoder;
-  EXPECT_LE(encoder.encode(second, {&first, nullptr}).size(), 52U + 12U + 4U);
 }
 
 /// One client of a random walk: the received frames and its decoder.
@@ -290,24 +208,6 @@ TEST(FrameCodec, ASteadyStreamAllocatesNothing) {
   const std::size_t before = test::allocation_count();
   for (std::uint32_t number = 61; number <= 120; ++number) ASSERT_TRUE(send(number));
   EXPECT_EQ(test::allocation_count(), before);
-}
-
-TEST(FrameCodec, SmoothMotionCostsLittle) {
-  World world(4000, 9);
-  std::deque<GridFrame> got;
-  FrameEncoder encoder;
-  double bits = 0;
-  int frames = 0;
-  for (int f = 0; f < 20; ++f) {
-    world.advance(1);
-    got.push_front(on_grid(world.state(), plain_scale(5e-4)));
-    if (got.size() < 3) continue;
-    bits += 8.0 * static_cast<double>(encoder.encode(got[0], {&got[1], &got[2]}).size());
-    ++frames;
-  }
-  // The quantum is 1 mm. Each axis has a random error of up to 0.3 mm, twice, and three roundings,
-  // so the entropy is about 1.6 bits. Positions alone would be 48 bits.
-  EXPECT_LE(bits / frames / 4000, 3 * 2.0);
 }
 
 }  // namespace

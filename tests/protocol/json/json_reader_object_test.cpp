@@ -229,13 +229,5 @@ TEST_F(ObjectReaderTest, ErrorsAreBounded) {
   EXPECT_EQ(errors.size(), kMaxReadErrors);
 }
 
-TEST(JsonPointer, EscapesKeysOnly) {
-  EXPECT_EQ(pointer_to("", "a"), "/a");
-  EXPECT_EQ(pointer_to("/a", "m~n/o~1"), "/a/m~0n~1o~01");
-  EXPECT_EQ(pointer_to("/a/b", 12), "/a/b/12");
-  const Json document = Json::parse(R"({"m~n/o": [5, 6]})");
-  EXPECT_EQ(document.at(Json::json_pointer(pointer_to(pointer_to("", "m~n/o"), 1))), 6);
-}
-
 }  // namespace
 }  // namespace vat::json_reader_object_test

@@ -31,65 +31,22 @@ TEST(ParseJson, GivesTheDocument) {
 }
 
 TEST(ParseJson, RefusesInvalidJson) {
-  for (const char* text : {"",
-                           " ",
-                           "{",
-                           "[1,]",
-                           "{\"a\":}",
-                           "{'a':1}",
-                           "nul",
-                           "01",
-                           "1.",
-                           ".5",
-                           "+1",
-                           "NaN",
-                           "Infinity",
-                           "-",
-                           "[1 2]",
-                           "\"open",
-                           "\"tab\there\"",
-                           "\"\\x\"",
-                           "{\"a\":1,}",
-                           "// c\n1",
-                           "{1:2}"}) {
-    EXPECT_EQ(code_of(text), "parse_error") << text;
-  }
-}
-
-TEST(ParseJson, RefusesAnythingAfterTheDocument) {
-  EXPECT_EQ(code_of("{} {}"), "parse_error");
-  EXPECT_EQ(code_of("1 x"), "parse_error");
-  EXPECT_EQ(code_of("1 \n\t "), "");
-}
-
-TEST(ParseJson, RefusesZeroBytes) {
   using namespace std::string_literals;
-  EXPECT_EQ(code_of("{}\0"s), "parse_error");
-  EXPECT_EQ(code_of("{}\0{\"hidden\": 1}"s), "parse_error");
-  EXPECT_EQ(code_of("\"a\0b\""s), "parse_error");
-  EXPECT_EQ(code_of("\0"s), "parse_error");
-}
-
-TEST(ParseJson, RefusesTextThatIsNotUtf8) {
-  for (const char* text : {"\"\xff\"", "\"\xc3\"", "\"\xc0\xaf\"", "\"\xed\xa0\x80\"",
-                           "\"\xf5\x80\x80\x80\"", "{\"\x80\":1}", "\xff"}) {
-    EXPECT_EQ(code_of(text), "parse_error");
+  const std::vector<std::string> texts[] = {
+      {"", " ", "{", "[1,]", "{\"a\":}", "{'a':1}", "nul", "01", "1.", ".5", "+1", "NaN"},
+      {"Infinity", "-", "[1 2]", "\"open", "\"tab\there\"", "\"\\x\"", "{\"a\":1,}"},
+      {"// c\n1", "{1:2}", "{} {}", "1 x"},
+      {"{}\0"s, "{}\0{\"hidden\": 1}"s, "\"a\0b\""s, "\0"s},  // zero bytes
+      {"\"\xff\"", "\"\xc3\"", "\"\xc0\xaf\"", "\"\xed\xa0\x80\"", "\"\xf5\x80\x80\x80\"",
+       "{\"\x80\":1}", "\xff"},                                   // text that is not UTF-8
+      {R"("\ud800")", R"("\udc00")", R"("\ud800\ud800")"},        // lone surrogates
+      {"1e400", "[-1e999999999]", "9" + std::string(400, '0')}};  // numbers that are not finite
+  for (const std::vector<std::string>& kind : texts) {
+    for (const std::string& text : kind) EXPECT_EQ(code_of(text), "parse_error") << text;
   }
-}
-
-TEST(ParseJson, RefusesLoneSurrogates) {
-  EXPECT_EQ(code_of(R"("\ud800")"), "parse_error");
-  EXPECT_EQ(code_of(R"("\udc00")"), "parse_error");
-  EXPECT_EQ(code_of(R"("\ud800\ud800")"), "parse_error");
-  EXPECT_EQ(code_of(R"("\ud83d\ude00")"), "");
-}
-
-TEST(ParseJson, RefusesNumbersThatAreNotFinite) {
-  EXPECT_EQ(code_of("1e400"), "parse_error");
-  EXPECT_EQ(code_of("[-1e999999999]"), "parse_error");
-  EXPECT_EQ(code_of("9" + repeat("0", 400)), "parse_error");
-  EXPECT_EQ(code_of("1e308"), "");
-  EXPECT_EQ(code_of("1e-400"), "");  // rounds to 0, as in every reader
+  for (const char* text : {"1 \n\t ", R"("\ud83d\ude00")", "1e308", "1e-400"}) {
+    EXPECT_EQ(code_of(text), "") << text;  // the last one is rounded to 0, as in every reader
+  }
 }
 
 TEST(ParseJson, BoundsTheBytes) {

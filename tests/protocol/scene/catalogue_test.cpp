@@ -1,11 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 
 #include "tests/protocol/scene/scene_json_cases.h"
+#include "tests/support/temporary_folder.h"
 
 namespace vat::catalogue_test {
 namespace {
@@ -19,18 +18,12 @@ constexpr const char* kScenesFolder = VAT_SOURCE_DIR "/protocol/scenes";
 /// A temporary folder of scene files.
 class SceneFiles : public testing::Test {
  protected:
-  void SetUp() override {
-    folder = fs::path(testing::TempDir()) / ("vat-scenes-" + std::to_string(getpid()));
-    fs::create_directories(folder / "inside");
-  }
-  void TearDown() override { fs::remove_all(folder); }
-
   std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder / name) << text;
-    return (folder / name).string();
+    folder.write(name, text);
+    return folder.file(name);
   }
 
-  fs::path folder;
+  test::TemporaryFolder folder;
 };
 
 constexpr const char* kMinimal = R"({"format": "vat.scene/1", "materials": [], "bodies": []})";
@@ -85,8 +78,9 @@ TEST_F(SceneFiles, MeshesAreReadBesideTheScene) {
 
 TEST_F(SceneFiles, MeshesOutsideTheFolderAreRefused) {
   write("outside.obj", kTetrahedron);
-  const MeshSource meshes = meshes_in_folder((folder / "inside").string());
-  const std::string absolute = (folder / "outside.obj").string();
+  write("inside/inside.obj", kTetrahedron);
+  const MeshSource meshes = meshes_in_folder(folder.file("inside"));
+  const std::string absolute = folder.file("outside.obj");
   ASSERT_TRUE(fs::exists(absolute));
   for (const std::string& name :
        {std::string("../outside.obj"), absolute, std::string("./../outside.obj"),
@@ -113,8 +107,8 @@ TEST_F(SceneFiles, ErrorsOfAMeshNameTheMemberThatAsksForIt) {
 }
 
 TEST_F(SceneFiles, UnreadableScenesAreRefused) {
-  EXPECT_EQ(lines(read_scene_file((folder / "absent.json").string())), "no_such_file \n");
-  EXPECT_EQ(lines(read_scene_file(folder.string())), "no_such_file \n");
+  EXPECT_EQ(lines(read_scene_file(folder.file("absent.json"))), "no_such_file \n");
+  EXPECT_EQ(lines(read_scene_file(folder.path().string())), "no_such_file \n");
   EXPECT_EQ(lines(read_scene_file(write("scene.json", "{"))), "parse_error \n");
   const std::string spaces(kSceneLimits.bytes + 1, ' ');
   EXPECT_EQ(lines(read_scene_file(write("scene.json", spaces))), "too_large \n");
@@ -125,7 +119,7 @@ TEST_F(SceneFiles, TheCatalogueListsItsScenesByFileName) {
                       "description": "D", "materials": [], "bodies": []})");
   write("a.json", kMinimal);
   write("notes.txt", "not a scene");
-  const Result<Catalogue> catalogue = Catalogue::open(folder.string());
+  const Result<Catalogue> catalogue = Catalogue::open(folder.path().string());
   ASSERT_EQ(lines(catalogue), "");
   const std::vector<CatalogueEntry>& entries = catalogue.value().entries();
   ASSERT_EQ(entries.size(), 2U);
@@ -143,14 +137,14 @@ TEST_F(SceneFiles, TheCatalogueReportsEveryBadSceneWithItsFile) {
   write("a.json", "{");
   write("b.json", kMinimal);
   write("c.json", R"({"format": "vat.scene/1", "materials": 1, "bodies": []})");
-  const Result<Catalogue> catalogue = Catalogue::open(folder.string());
+  const Result<Catalogue> catalogue = Catalogue::open(folder.path().string());
   ASSERT_EQ(lines(catalogue), "parse_error \nwrong_type /materials\n");
   EXPECT_THAT(catalogue.errors()[0].message, HasSubstr("a.json: "));
   EXPECT_THAT(catalogue.errors()[1].message, HasSubstr("c.json: "));
 }
 
 TEST_F(SceneFiles, ACatalogueNeedsItsFolder) {
-  EXPECT_EQ(lines(Catalogue::open((folder / "absent").string())), "no_such_folder \n");
+  EXPECT_EQ(lines(Catalogue::open(folder.file("absent"))), "no_such_folder \n");
   EXPECT_EQ(lines(Catalogue::open(write("file", "x"))), "no_such_folder \n");
 }
 

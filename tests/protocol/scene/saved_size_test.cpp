@@ -7,6 +7,7 @@
 #include "core/saved/greatest_size.h"
 #include "core/simulation/simulation.h"
 #include "protocol/scene/scene_json.h"
+#include "tests/support/saved_bits.h"
 
 // The size of a saved simulation, and its bound that is known before reading.
 
@@ -67,6 +68,23 @@ INSTANTIATE_TEST_SUITE_P(Kinds, SavedSize,
                          testing::Values(std::pair("liquid", "tait"),
                                          std::pair("liquid", "incompressible"),
                                          std::pair("deformable", "tait")));
+
+// Each catalogue scene, saved at its start and later, continues with the same bits after it is
+// read.
+TEST(SavedCatalogue, ContinuesFromItsBytes) {
+  for (const auto& file : std::filesystem::directory_iterator(VAT_SOURCE_DIR "/protocol/scenes")) {
+    if (file.path().extension() != ".json") continue;
+    SCOPED_TRACE(file.path().stem().string());
+    const Result<Scene> scene = read_scene_file(file.path().string());
+    ASSERT_TRUE(scene.ok());
+    Simulation simulation = test::make_simulation(scene.value());
+    test::expect_goes_on(simulation, 3);
+    simulation.advance(7 * simulation.steps_per_tick() + 1);
+    test::expect_goes_on(simulation, 3);
+    EXPECT_LE(simulation.snapshot().to_bytes().size(),
+              greatest_saved_size(simulation.greatest_particle_count(), simulation.spring_count()));
+  }
+}
 
 }  // namespace
 }  // namespace vat::saved_size_test

@@ -157,5 +157,42 @@ TEST_F(SceneMistakesAlone, InLists) {
   EXPECT_EQ(tried + need_a_neighbour.size() + outside_of_lists, mistakes_.size());
 }
 
+/// A valid scene, and changes that each violate one rule.
+class SceneRules : public testing::TestWithParam<const char*> {
+ protected:
+  const Json golden_ = golden(GetParam());
+};
+
+/// Applies changes. `changes` contains the new values by JSON pointer.
+Json with_changes(Json scene, const Json& changes) {
+  for (const auto& [pointer, value] : changes.items()) {
+    scene[Json::json_pointer(pointer)] = value;
+  }
+  return scene;
+}
+
+TEST_P(SceneRules, TheSceneItselfIsFine) {
+  EXPECT_EQ(scene_cases::lines(read_scene(golden_["scene"], scene_cases::no_meshes)), "");
+}
+
+TEST_P(SceneRules, EachMistakeHasItsOneError) {
+  ASSERT_GE(golden_["mistakes"].size(), 20U);
+  for (const Json& mistake : golden_["mistakes"]) {
+    const Result<Scene> scene =
+        read_scene(with_changes(golden_["scene"], mistake["change"]), scene_cases::no_meshes);
+    EXPECT_EQ(scene_cases::lines(scene),
+              mistake["code"].get<std::string>() + ' ' + mistake["path"].get<std::string>() + '\n')
+        << mistake["change"];
+    ASSERT_FALSE(scene.ok());
+    EXPECT_GT(scene.errors()[0].message.size(), 10U);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Files, SceneRules, testing::Values("world-rules.json", "plane-rules.json"),
+                         [](const auto& file) {
+                           const std::string name = file.param;
+                           return name.substr(0, name.find('-'));
+                         });
+
 }  // namespace
 }  // namespace vat::scene_json_mistakes_test

@@ -13,8 +13,6 @@ import schemas
 from jsonschema import Draft202012Validator
 
 SCENES = schemas.ROOT / "protocol" / "scenes"
-NAME = re.compile(r"^[a-zA-Z0-9._-]+$")
-ACTIONS = {"send", "receive"}
 
 
 class Schemas(unittest.TestCase):
@@ -74,63 +72,10 @@ class Schemas(unittest.TestCase):
 
 
 class AsyncApi(unittest.TestCase):
-    def setUp(self):
+    def test_has_the_content_of_the_schemas(self):
         if os.environ.get("VAT_UPDATE_GOLDEN"):
             asyncapi.DOCUMENT.write_text(asyncapi.text(), "utf-8")
-        self.text = asyncapi.DOCUMENT.read_text("utf-8")
-        self.document = json.loads(self.text)
-
-    def pointed(self, reference):
-        node = self.document
-        for part in reference.removeprefix("#/").split("/"):
-            node = node[part.replace("~1", "/").replace("~0", "~")]
-        return node
-
-    def test_is_what_the_schemas_say(self):
-        self.assertEqual(self.text, asyncapi.text())
-
-    def test_refers_to_what_is_there(self):
-        for reference in schemas.references(self.document):
-            with self.subTest(reference):
-                file, _, definition = reference.partition("#/$defs/")
-                if file.startswith("schemas/"):
-                    name = file.removeprefix("schemas/").removesuffix(".json")
-                    self.assertIn(definition, schemas.definitions(name))
-                else:
-                    self.assertTrue(self.pointed(reference))
-
-    def test_has_the_structure_of_version_3(self):
-        self.assertRegex(self.document["asyncapi"], r"^3\.\d+\.\d+$")
-        self.assertLessEqual({"title", "version"}, set(self.document["info"]))
-        known = {"asyncapi", "info", "defaultContentType", "servers", "channels", "operations",
-                 "components"}
-        self.assertLessEqual(set(self.document), known)
-        for server in self.document["servers"].values():
-            self.assertLessEqual({"host", "protocol"}, set(server))
-        for channel in self.document["channels"].values():
-            self.assertLessEqual({"address", "messages"}, set(channel))
-            self.assertTrue(all(map(NAME.match, channel["messages"])))
-
-    def test_has_an_operation_for_every_message(self):
-        offered = self.document["channels"]["session"]["messages"]
-        carried = set()
-        for name, operation in self.document["operations"].items():
-            with self.subTest(name):
-                self.assertRegex(name, NAME)
-                self.assertIn(operation["action"], ACTIONS)
-                self.assertEqual(self.pointed(operation["channel"]["$ref"])["address"], "/ws")
-                reply = operation.get("reply", {}).get("messages", [])
-                self.assertEqual(bool(reply), operation["action"] == "receive")
-                for message in operation["messages"] + reply:
-                    carried.add(message["$ref"].rsplit("/", 1)[1])
-        self.assertEqual(carried, set(offered))
-        self.assertEqual(set(offered), set(self.document["components"]["messages"]))
-
-    def test_has_a_schema_for_every_message(self):
-        for name, message in self.document["components"]["messages"].items():
-            with self.subTest(name):
-                self.assertEqual(message["name"], name)
-                Draft202012Validator.check_schema(message["payload"]["schema"])
+        self.assertEqual(asyncapi.DOCUMENT.read_text("utf-8"), asyncapi.text())
 
 
 if __name__ == "__main__":

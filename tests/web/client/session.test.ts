@@ -1,6 +1,6 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from 'vitest';
 import { emptyFrame, Session } from '../../../web/client/index';
-import type { Frame, SessionDescription } from '../../../web/client/index';
+import type { Frame, SessionDescription, SessionOptions } from '../../../web/client/index';
 import { FakeSocket } from '../fake_socket';
 import { goldenBytes } from '../golden';
 
@@ -14,23 +14,16 @@ let faults: string[];
 let seconds: number;
 let session: Session;
 
-function newSession(
-  chosen?: string,
-  frameFor?: () => Frame,
-  errorInRadii?: number,
-  tokens: { token?: string; resume?: string } = {},
-): Session {
+function newSession(options: Partial<SessionOptions> = {}, frameFor?: () => Frame): Session {
   return new Session(
     {
-      ...tokens,
       url: 'ws://server/ws',
-      session: chosen,
       socket: FakeSocket,
       now: () => seconds,
       timeoutMs: 1000,
       clockPeriodMs: 5000,
       retryDelayMs: () => 100,
-      ...(errorInRadii !== undefined && { errorInRadii }),
+      ...options,
     },
     {
       onState: ({ name }) => states.push(name),
@@ -57,14 +50,25 @@ afterEach(() => {
   vi.useRealTimers();
 });
 
-/** Opens the newest socket and replies to all requests of a session's start. */
-async function enter(): Promise<FakeSocket> {
+/** Opens the newest socket and replies to the requests up to the join. */
+async function join(description: object = kDescription): Promise<FakeSocket> {
   const socket = FakeSocket.newest;
   socket.accept();
   await socket.answer('server.info', { result: { time: 1050 } });
-  await socket.answer('session.join', { result: { description: kDescription } });
+  await socket.answer('session.join', { result: { description } });
+  return socket;
+}
+
+/** Replies to all requests of a session's start. */
+async function enter(): Promise<FakeSocket> {
+  const socket = await join();
   await socket.answer('frames.subscribe', { result: { tick: 0 } });
   return socket;
+}
+
+function openSession(): Promise<FakeSocket> {
+  session.open();
+  return enter();
 }
 
 describe('the error of positions', () => {
@@ -75,12 +79,9 @@ describe('the error of positions', () => {
   });
 
   it('is a fraction of the smallest radius, and is requested again if the radius changes', async () => {
-    session = newSession(undefined, undefined, 0.5);
+    session = newSession({ errorInRadii: 0.5 });
     session.open();
-    const socket = FakeSocket.newest;
-    socket.accept();
-    await socket.answer('server.info', { result: { time: 1050 } });
-    await socket.answer('session.join', { result: { description: described(0.4, 0.2) } });
+    const socket = await join(described(0.4, 0.2));
     const subscriptions = () =>
       socket.sent.flatMap((m) => (m.method === 'frames.subscribe' ? [m.params] : []));
     expect(subscriptions()).toEqual([{ max_error: 0.1 }]);
@@ -113,7 +114,7 @@ describe('a server that asks for a token', () => {
   }
 
   it('is shown the one that was given, and after a break the one to come back with', async () => {
-    session = newSession(undefined, undefined, undefined, { token: kToken });
+    session = newSession({ token: kToken });
     session.open();
     const socket = await knock();
     expect(shown(socket)).toEqual([{ token: kToken }]);
@@ -134,7 +135,7 @@ describe('a server that asks for a token', () => {
   });
 
   it('receives the given token if the identity is forgotten', async () => {
-    session = newSession(undefined, undefined, undefined, { token: kToken, resume: kResume });
+    session = newSession({ token: kToken, resume: kResume });
     session.open();
     const socket = await knock();
     await socket.answer('access.enter', refusal);
@@ -153,8 +154,7 @@ describe('a server that asks for a token', () => {
   });
 
   it.each([4003, 4010])('is not contacted again after close code %i', async (code) => {
-    session.open();
-    const socket = await enter();
+    const socket = await openSession();
     socket.break({ code, reason: '' });
     expect(states.at(-1)).toBe('closed');
     vi.advanceTimersByTime(100_000);
@@ -163,32 +163,27 @@ describe('a server that asks for a token', () => {
 });
 
 describe('entering', () => {
-  it('measures the clock, joins and subscribes', async () => {
-    session.open();
-    const socket = await enter();
-    expect(socket.methods).toEqual(['server.info', 'session.join', 'frames.subscribe']);
+  const kMethods = ['server.info', 'session.join', 'frames.subscribe'];
+
+  it('measures the clock, joins and subscribes, and does so again after a break', async () => {
+    const socket = await openSession();
+    expect(socket.methods).toEqual(kMethods);
     expect(offsets).toEqual([1000]);
     expect(descriptions).toEqual([kDescription]);
+    socket.break();
+    vi.advanceTimersByTime(100);
+    expect((await enter()).methods).toEqual(kMethods);
+    expect(states).toEqual(['connecting', 'open', 'waiting', 'connecting', 'open']);
+    expect(descriptions).toHaveLength(2);
   });
 
   it.each([
     [undefined, undefined],
     ['s7', { session: 's7' }],
   ])('joins session %s', async (chosen, params) => {
-    session = newSession(chosen);
-    session.open();
-    const socket = await enter();
+    session = newSession({ session: chosen });
+    const socket = await openSession();
     expect(socket.sent.find(({ method }) => method === 'session.join')?.params).toEqual(params);
-  });
-
-  it('does the same again after a break', async () => {
-    session.open();
-    (await enter()).break();
-    vi.advanceTimersByTime(100);
-    const second = await enter();
-    expect(second.methods).toEqual(['server.info', 'session.join', 'frames.subscribe']);
-    expect(states).toEqual(['connecting', 'open', 'waiting', 'connecting', 'open']);
-    expect(descriptions).toHaveLength(2);
   });
 
   it('uses a new connection if the server rejects the join', async () => {
@@ -206,8 +201,7 @@ describe('entering', () => {
   });
 
   it('joins again when its session is closed', async () => {
-    session.open();
-    const socket = await enter();
+    const socket = await openSession();
     const params = { session: 's1', reason: 'closed by a client' };
     socket.receiveJson({ method: 'session.closed', params });
     await socket.answer('server.info', { result: { time: 1050 } });
@@ -218,15 +212,13 @@ describe('entering', () => {
 
 describe('while it is in', () => {
   it('takes each new description', async () => {
-    session.open();
-    const socket = await enter();
+    const socket = await openSession();
     socket.receiveJson({ method: 'session.description', params: { ...kDescription, epoch: 3 } });
     expect(descriptions.map(({ epoch }) => epoch)).toEqual([2, 3]);
   });
 
   it('decodes frames and acknowledges them on request', async () => {
-    session.open();
-    const socket = await enter();
+    const socket = await openSession();
     const bytes = goldenBytes('v2-key');
     socket.receive(bytes);
     expect(frames).toHaveLength(1);
@@ -238,8 +230,7 @@ describe('while it is in', () => {
   });
 
   it('reports an invalid frame, requests a key frame and continues', async () => {
-    session.open();
-    const socket = await enter();
+    const socket = await openSession();
     socket.receive(new ArrayBuffer(10));
     expect(faults).toEqual([expect.stringContaining('(truncated)')]);
     expect(socket.methods.slice(3)).toEqual(['frames.subscribe']);
@@ -248,8 +239,7 @@ describe('while it is in', () => {
   });
 
   it('names the frame that is missing, once, and takes the next key frame', async () => {
-    session.open();
-    const socket = await enter();
+    const socket = await openSession();
     socket.receive(goldenBytes('v2-delta-one'));
     expect(faults).toEqual([expect.stringMatching(/missing_reference.*frame 10 is not stored/)]);
     socket.receive(goldenBytes('v2-delta-two'));
@@ -268,8 +258,7 @@ describe('while it is in', () => {
   });
 
   it('uses a new connection if the key frame is invalid too', async () => {
-    session.open();
-    const socket = await enter();
+    const socket = await openSession();
     socket.receive(new ArrayBuffer(10));
     socket.receive(new ArrayBuffer(10));
     expect(states.at(-1)).toBe('waiting');
@@ -277,17 +266,15 @@ describe('while it is in', () => {
 
   it('decodes to the frame that it is given', async () => {
     const given = emptyFrame();
-    session = newSession(undefined, () => given);
-    session.open();
-    const socket = await enter();
+    session = newSession({}, () => given);
+    const socket = await openSession();
     socket.receive(goldenBytes('v2-key'));
     expect(frames.map(({ frame }) => frame)).toEqual([given]);
     expect(given.header.number).toBe(10);
   });
 
   it('requests no frames while the page is hidden', async () => {
-    session.open();
-    const socket = await enter();
+    const socket = await openSession();
     session.watch(false);
     session.watch(false);
     expect(socket.methods.slice(3)).toEqual(['frames.unsubscribe']);
@@ -299,18 +286,14 @@ describe('while it is in', () => {
   it('joins without a subscription while the page is hidden, and subscribes later', async () => {
     session.watch(false);
     session.open();
-    const socket = FakeSocket.newest;
-    socket.accept();
-    await socket.answer('server.info', { result: { time: 1050 } });
-    await socket.answer('session.join', { result: { description: kDescription } });
+    const socket = await join();
     expect(socket.methods).toEqual(['server.info', 'session.join']);
     session.watch(true);
     expect(socket.methods).toEqual(['server.info', 'session.join', 'frames.subscribe']);
   });
 
   it('measures the clock again and again', async () => {
-    session.open();
-    const socket = await enter();
+    const socket = await openSession();
     vi.advanceTimersByTime(5000);
     expect(socket.methods.filter((method) => method === 'server.info')).toHaveLength(2);
   });
@@ -326,9 +309,8 @@ describe('while it is in', () => {
 
 describe('going to another session', () => {
   it('joins it over the same connection as a new participant, and rejoins after an interruption', async () => {
-    session = newSession(undefined, undefined, undefined, { resume: 'a'.repeat(22) });
-    session.open();
-    const socket = await enter();
+    session = newSession({ resume: 'a'.repeat(22) });
+    const socket = await openSession();
     session.go('r1');
     expect(socket.sent.at(-1)).toMatchObject({
       method: 'session.join',
@@ -343,10 +325,7 @@ describe('going to another session', () => {
     await socket.answer('frames.subscribe', { result: { tick: 0 } });
     socket.break();
     vi.advanceTimersByTime(100);
-    const second = FakeSocket.newest;
-    second.accept();
-    await second.answer('server.info', { result: { time: 1050 } });
-    await second.answer('session.join', { result: { description: kDescription } });
+    const second = await join();
     expect(second.sent.find(({ method }) => method === 'session.join')?.params).toEqual({
       session: 'r1',
       resume: 'b'.repeat(22),
@@ -355,8 +334,7 @@ describe('going to another session', () => {
 
   it('passes over the answer of one that it has gone on from', async () => {
     session = newSession();
-    session.open();
-    const socket = await enter();
+    const socket = await openSession();
     session.go('r1');
     session.go('r2');
     const joined = (name: string) => ({

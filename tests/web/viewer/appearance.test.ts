@@ -1,8 +1,7 @@
-import { Color, Mesh } from 'three';
-import type { ShaderMaterial } from 'three';
+import { Mesh } from 'three';
+import type { Color, ShaderMaterial } from 'three';
 import { describe, expect, it } from 'vitest';
-import { BodyKind } from '../../../web/client/index';
-import type { Appearance, Frame, SessionDescription } from '../../../web/client/index';
+import type { Appearance, SessionDescription } from '../../../web/client/index';
 import {
   kAbsorptionField,
   kAppearanceFields,
@@ -10,43 +9,24 @@ import {
   withAppearanceOf,
 } from '../../../web/viewer/build/parameters/appearance_fields';
 import { absorptionLengthOf, kFinishes, lookOf } from '../../../web/viewer/view/base/appearance';
-import type { Theme } from '../../../web/viewer/view/base/theme';
 import { sharedUniforms } from '../../../web/viewer/view/bodies/shared_uniforms';
 import { World } from '../../../web/viewer/view/world';
+import { described, frameOf, kTheme } from '../described';
 import format from '../../../protocol/schemas/scene_format.json';
 
-const kNames = ['stage', 'floor', 'shadow', 'grid', 'edge', 'wall', 'mark'];
-const kTheme = Object.fromEntries(kNames.map((name) => [name, new Color()])) as unknown as Theme;
 const kSchema = format.$defs.appearance.properties;
 
-function described(honey: Appearance, water: Appearance): SessionDescription {
-  const body = (id: number, material: string) => ({
-    body: id,
-    name: material,
-    kind: 'liquid' as const,
-    material,
-    particles: 1,
-    radius: 0.01,
-  });
-  return {
-    session: 's1',
-    epoch: 1,
-    tick: 0,
-    name: '',
-    scene: 'pool',
-    title: '',
-    playing: false,
-    speed: 1,
-    tick_seconds: 0.02,
-    gravity: [0, 0, -9.81],
-    vat: { min: [0, 0, 0], max: [2, 1, 3], lid: false },
-    materials: [
-      { name: 'honey', appearance: honey },
-      { name: 'water', appearance: water },
-    ],
-    bodies: [body(1, 'honey'), body(2, 'water')],
-  };
-}
+const liquids = (honey: Appearance, water: Appearance): SessionDescription =>
+  described(
+    { 1: 'honey', 2: 'water' },
+    {
+      vat: { min: [0, 0, 0], max: [2, 1, 3], lid: false },
+      materials: [
+        { name: 'honey', appearance: honey },
+        { name: 'water', appearance: water },
+      ],
+    },
+  );
 
 /** Returns the values of a uniform of the world's bodies. */
 function uniformsOf(world: World, name: string): unknown[] {
@@ -62,10 +42,10 @@ const hex = (colour: unknown): string => `#${(colour as Color).getHexString()}`;
 describe('Appearance', () => {
   it('colours bodies by their material, and follows a change of the material', () => {
     const world = new World(kTheme, sharedUniforms());
-    world.describe(described({ colour: '#f0a01e', roughness: 0.1 }, { colour: '#4fb4e0' }));
+    world.describe(liquids({ colour: '#f0a01e', roughness: 0.1 }, { colour: '#4fb4e0' }));
     expect(uniformsOf(world, 'colour').map(hex)).toEqual(['#f0a01e', '#4fb4e0']);
     expect(uniformsOf(world, 'roughness')).toEqual([0.1, 0.5]);
-    world.describe(described({ colour: '#102030' }, { colour: '#4fb4e0', roughness: 0.5 }));
+    world.describe(liquids({ colour: '#102030' }, { colour: '#4fb4e0', roughness: 0.5 }));
     expect(uniformsOf(world, 'colour').map(hex)).toEqual(['#102030', '#4fb4e0']);
     expect(uniformsOf(world, 'roughness')).toEqual([0.5, 0.5]);
     world.colour = 'body';
@@ -75,15 +55,9 @@ describe('Appearance', () => {
   it('relates the absorption of each liquid to that of the darkest', () => {
     const shared = sharedUniforms();
     const world = new World(kTheme, shared);
-    world.describe(described({ opacity: 0.8 }, { absorption_length: 0.5 }));
+    world.describe(liquids({ opacity: 0.8 }, { absorption_length: 0.5 }));
     expect(world.fluid!.clarity).toBeCloseTo(0.25); // the vat's smallest width × (1.05 - 0.8)
-    const header = { epoch: 1, time: 0, origin: [0, 0, 0], quantum: 0.1, attributeQuanta: [] };
-    const kind = BodyKind.liquid;
-    const blocks = [1, 2].map((body) => ({
-      ...{ kind, body, numbers: undefined, attributes: [] },
-      positions: Uint16Array.of(body, 0, 0),
-    }));
-    world.show({ header, blocks } as unknown as Frame);
+    world.show(frameOf(1, { 1: 1, 2: 2 }));
     world.prepare();
     const { data, width } = shared.look.body_table.value!.image as {
       data: Float32Array;

@@ -58,9 +58,12 @@ describe('materials that a scene lacks', () => {
       expect(stiffness).toBeGreaterThan(0);
     }
     if (isNew('water')) {
-      const { stiffness, support_radius } = material(scene, 'water').liquid!;
+      const { stiffness, viscosity, support_radius } = material(scene, 'water').liquid!;
       expect((Math.sqrt(stiffness) * step) / support_radius).toBeLessThan(1.01 * 0.4);
       expect(stiffness).toBeLessThanOrEqual(400);
+      const own = material(model, 'water').liquid!;
+      const most = (own.viscosity * model.numerics!.step!) / own.support_radius ** 2;
+      expect((viscosity * step) / support_radius ** 2).toBeLessThan(1.01 * most);
     }
   });
 

@@ -7,6 +7,8 @@ import { Lattice } from '../../../web/viewer/view/solids/lattice';
 import { geometryOf } from '../../../web/viewer/view/solids/shape_geometry';
 import { subdivide } from '../../../web/viewer/view/solids/subdivision';
 import { hullOf } from '../../../web/viewer/view/solids/cell_hull';
+import { openEdges, volumeOf } from '../mesh';
+import type { Mesh } from '../mesh';
 
 const kBox: SceneShape = { type: 'box', size: [0.4, 0.2, 0.3], center: [1, 2, 3] };
 const kBall: SceneShape = { type: 'sphere', radius: 0.2, center: [0.1, 0, 0] };
@@ -26,11 +28,6 @@ const kTetrahedron: SceneShape = {
   ],
 };
 
-interface Mesh {
-  vertices: ArrayLike<number>;
-  triangles: ArrayLike<number>;
-}
-
 function meshOf(geometry: BufferGeometry): Mesh {
   const { array, count } = geometry.getAttribute('position');
   const triangles = geometry.index?.array ?? Array.from({ length: count }, (_, i) => i);
@@ -39,28 +36,6 @@ function meshOf(geometry: BufferGeometry): Mesh {
 
 const corner = ({ vertices, triangles }: Mesh, i: number): Vector3 =>
   new Vector3().fromArray(vertices as number[], 3 * triangles[i]!);
-
-/** Returns the volume inside a closed mesh; negative if its triangles are clockwise. */
-function volumeOf(mesh: Mesh): number {
-  let sum = 0;
-  for (let i = 0; i < mesh.triangles.length; i += 3) {
-    const [a, b, c] = [corner(mesh, i), corner(mesh, i + 1), corner(mesh, i + 2)];
-    sum += a.dot(b.cross(c)) / 6;
-  }
-  return sum;
-}
-
-/** Returns the number of edges without an opposite edge of another triangle. */
-function openEdges({ triangles }: Mesh): number {
-  const edges = new Map<string, number>();
-  for (let i = 0; i < triangles.length; ++i) {
-    const from = triangles[i]!;
-    const to = triangles[i % 3 === 2 ? i - 2 : i + 1]!;
-    const key = [Math.min(from, to), Math.max(from, to)].join(' ');
-    edges.set(key, (edges.get(key) ?? 0) + (from < to ? 1 : -1));
-  }
-  return [...edges.values()].filter((sum) => sum !== 0).length;
-}
 
 /** Returns the centres of the cells of a block of this many cells, centred at a point. */
 function block(count: readonly number[], spacing: number, middle = [0, 0, 0]): number[] {
@@ -147,7 +122,7 @@ describe('A subdivided cell', () => {
     const mesh = subdivide(corners.length, quads, isOuter);
     expect(mesh.count).toBe(8 + 12 + 6);
     expect(mesh.triangles.length).toBe(3 * 48);
-    expect(openEdges({ vertices: [], triangles: mesh.triangles })).toBe(0);
+    expect(openEdges(mesh)).toBe(0);
     for (let i = 0; i < mesh.count; ++i) {
       const row = mesh.weights.slice(mesh.begin[i], mesh.begin[i + 1]);
       expect(row.reduce((sum, weight) => sum + weight, 0)).toBeCloseTo(1, 6);
@@ -217,7 +192,7 @@ describe('The surface of a deformable body', () => {
     const vertices = new Float32Array(torn.rest.length);
     torn.follow(apart, 0.1, vertices);
     const { triangles } = torn.mesh;
-    expect(openEdges({ vertices, triangles })).toBe(0);
+    expect(openEdges({ triangles })).toBe(0);
     for (let i = 0; i < vertices.length; i += 3) {
       const inGap = vertices[i]! > 0.01 && vertices[i]! < 0.49;
       expect(inGap).toBe(false); // no surface spans the gap

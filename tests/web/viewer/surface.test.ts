@@ -2,38 +2,11 @@ import { describe, expect, it } from 'vitest';
 import { fieldAround } from '../../../web/viewer/view/surface/field';
 import { marchingCubes } from '../../../web/viewer/view/surface/marching_cubes';
 import type { Surface } from '../../../web/viewer/view/surface/marching_cubes';
+import { openEdges, volumeOf } from '../mesh';
+import type { Mesh } from '../mesh';
 
-/**
- * Returns whether each edge of each triangle belongs to one other triangle in the opposite
- * direction.
- */
-function isClosed({ indices }: Surface): boolean {
-  const edges = new Map<string, number>();
-  for (let t = 0; t < indices.length; t += 3) {
-    for (let i = 0; i < 3; ++i) {
-      const [a, b] = [indices[t + i]!, indices[t + ((i + 1) % 3)]!];
-      edges.set(`${a} ${b}`, (edges.get(`${a} ${b}`) ?? 0) + 1);
-    }
-  }
-  return [...edges].every(([edge, count]) => {
-    const [a, b] = edge.split(' ');
-    return count === edges.get(`${b} ${a}`);
-  });
-}
-
-/**
- * Returns the volume by the divergence theorem; positive if triangles are counter-clockwise from
- * outside.
- */
-function volumeOf({ positions: p, indices }: Surface): number {
-  let six = 0;
-  for (let t = 0; t < indices.length; t += 3) {
-    const [a, b, c] = [3 * indices[t]!, 3 * indices[t + 1]!, 3 * indices[t + 2]!];
-    six += p[a]! * (p[b + 1]! * p[c + 2]! - p[b + 2]! * p[c + 1]!);
-    six += p[a + 1]! * (p[b + 2]! * p[c]! - p[b]! * p[c + 2]!);
-    six += p[a + 2]! * (p[b]! * p[c + 1]! - p[b + 1]! * p[c]!);
-  }
-  return six / 6;
+function meshOf({ positions, indices }: Surface): Mesh {
+  return { vertices: positions, triangles: indices };
 }
 
 /** Returns a generator of numbers from 0 to 1 that is the same in every run. */
@@ -59,8 +32,8 @@ describe('marchingCubes', () => {
         values: undefined,
       });
       expect(surface.indices.length).toBeGreaterThan(300);
-      expect(isClosed(surface)).toBe(true);
-      expect(volumeOf(surface)).toBeGreaterThan(0);
+      expect(openEdges(meshOf(surface))).toBe(0);
+      expect(volumeOf(meshOf(surface))).toBeGreaterThan(0);
     }
   });
 });
@@ -68,7 +41,7 @@ describe('marchingCubes', () => {
 describe('fieldAround', () => {
   it('gives one particle a sphere of its radius', () => {
     const surface = marchingCubes(fieldAround([100, 200, 300], 5));
-    expect(isClosed(surface)).toBe(true);
+    expect(openEdges(meshOf(surface))).toBe(0);
     const distances = surface.positions.reduce<number[]>((all, _, i, p) => {
       if (i % 3 === 0) all.push(Math.hypot(p[i]! - 100, p[i + 1]! - 200, p[i + 2]! - 300));
       return all;
@@ -83,8 +56,8 @@ describe('fieldAround', () => {
     const places = Array.from({ length: 512 }, (_, i) => [i & 7, (i >> 3) & 7, i >> 6]).flat();
     const values = Array.from({ length: 512 }, (_, i) => ((i & 7) < 4 ? 1 : 3));
     const surface = marchingCubes(fieldAround(places, radius, values));
-    expect(isClosed(surface)).toBe(true);
-    const volume = volumeOf(surface);
+    expect(openEdges(meshOf(surface))).toBe(0);
+    const volume = volumeOf(meshOf(surface));
     // Corners and edges are rounded, and sides move inwards by the mean of inner neighbours.
     expect(volume).toBeGreaterThan(0.6 * 512);
     expect(volume).toBeLessThan(512);
