@@ -8,8 +8,8 @@
 
 #include "core/kernels/lattice_sum.h"
 #include "core/numerics/step_limits.h"
-#include "tests/support/force_probe.h"
 #include "tests/core/kernels/quadrature.h"
+#include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
 namespace vat::test::cohesion_test {

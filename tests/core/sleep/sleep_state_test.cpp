@@ -105,7 +105,7 @@ TEST(SleepState, ViewsAndDiagnosticsAreOfAllBodies) {
   EXPECT_EQ(a.scene().bodies.size(), 4U);
   EXPECT_EQ(a.plan_text(), b.plan_text());
   const Diagnostics of_a = a.diagnostics();
-    const Diagnostics of_b = b.diagnostics();
+  const Diagnostics of_b = b.diagnostics();
   EXPECT_EQ(of_b.sleeping_bodies, 0U);
 
   const Real time = a.time();
