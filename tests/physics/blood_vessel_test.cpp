@@ -9,10 +9,8 @@
 
 // The catalogue scene in which liquid presses on soft tissue.
 
-namespace vat::blood_vessel_test {
+namespace vat::test::blood_vessel_test {
 namespace {
-
-using namespace test;
 
 constexpr Real kSpacing = 0.025;
 constexpr std::size_t kLayers = 3;  // layers of a wall
@@ -75,4 +73,4 @@ TEST_F(BloodVessel, SwellsWithEachBeatAndMostWhereTheTissueIsWeak) {
 }
 
 }  // namespace
-}  // namespace vat::blood_vessel_test
+}  // namespace vat::test::blood_vessel_test

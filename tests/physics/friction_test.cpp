@@ -2,16 +2,13 @@
 
 #include <cmath>
 
-#include "tests/support/mixed_scenes.h"
-#include "tests/support/same_bits.h"
+#include "tests/support/scenes.h"
 
 // Friction during motion with every integrator and step control. RIG-7 compares it with closed
 // forms.
 
-namespace vat::friction_test {
+namespace vat::test::friction_test {
 namespace {
-
-using namespace test;
 
 constexpr Real kFriction = 0.3;
 constexpr Real kGravity = 9.81;   // [m/s^2]
@@ -78,11 +75,5 @@ TEST(Friction, BetweenBodiesIsTheSameWithEveryStepControl) {
   }
 }
 
-TEST(Friction, GivesTheSameBitsForAnyThreadsAndFromASnapshot) {
-  Scene scene = make_crowd(IntegratorId::velocity_verlet, 1e-3);
-  scene.default_interface = {5000, 2, 0.5};
-  expect_same_bits(scene, 20, 10);
-}
-
 }  // namespace
-}  // namespace vat::friction_test
+}  // namespace vat::test::friction_test

@@ -6,10 +6,8 @@
 
 // Solids in a weakly compressible liquid, near walls.
 
-namespace vat::liquid_solids_test {
+namespace vat::test::liquid_solids_test {
 namespace {
-
-using namespace test;
 
 constexpr Real kSpacing = 0.02;
 constexpr Real kHalf = 0.16;  // half of the tank's length
@@ -67,4 +65,4 @@ TEST(LiquidSolids, MoveAtAWallAsBesideTheirMirrorImages) {
 }
 
 }  // namespace
-}  // namespace vat::liquid_solids_test
+}  // namespace vat::test::liquid_solids_test

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "tests/stability/builders.h"
+#include "tests/support/totals.h"
 
 namespace vat::stability {
 namespace {
@@ -14,20 +15,6 @@ std::vector<Vec3> make_shell(int n) {
   std::erase_if(shell,
                 [&](const Vec3& p) { return p.cwiseAbs().maxCoeff() < half - kSpacing / 2; });
   return shell;
-}
-
-struct Sums {
-  Vec3 momentum = Vec3::Zero();
-  Vec3 angular_momentum = Vec3::Zero();
-};
-
-Sums sum(const Diagnostics& now) {
-  Sums sums;
-  for (const BodyDiagnostics& body : now.bodies) {
-    sums.momentum += body.linear_momentum;
-    sums.angular_momentum += body.angular_momentum;
-  }
-  return sums;
 }
 
 }  // namespace
@@ -66,23 +53,15 @@ ClosedRun run_closed(const Scene& scene, std::uint32_t steps) {
   constexpr std::uint32_t kAtOnce = 20;
   Simulation simulation = test::make_simulation(scene);
   const Diagnostics start = simulation.diagnostics();
-  const Sums before = sum(start);
-  Real motion = 0;
-  Real turning = 0;
-  for (const BodyView& body : simulation.bodies()) {
-    for (std::size_t i = 0; i < body.masses.size(); ++i) {
-      const Real momentum = body.masses[i] * body.velocities[i].norm();
-      motion += momentum;
-      turning += momentum * body.positions[i].norm();
-    }
-  }
+  const test::Totals before = test::totals_of(start);
+  const auto [motion, turning] = test::motion_of(simulation);
   ClosedRun result;
   result.name = scene.name;
   const auto grow = [](Real& most, Real value) { most = std::max(most, value); };
   for (std::uint32_t n = 0; n < steps; n += kAtOnce) {
     result.undone += simulation.advance(kAtOnce).undone_steps;
     const Diagnostics now = simulation.diagnostics();
-    const Sums after = sum(now);
+    const test::Totals after = test::totals_of(now);
     grow(result.momentum, (after.momentum - before.momentum).norm() / motion);
     grow(result.angular_momentum,
          (after.angular_momentum - before.angular_momentum).norm() / turning);

@@ -6,6 +6,7 @@
 
 #include "tests/stability/builders.h"
 #include "tests/stability/transform.h"
+#include "tests/support/name_of.h"
 
 // A transformed scene gives the transformed result, up to round-off.
 
@@ -57,7 +58,7 @@ struct Compared {
 };
 
 Compared compare(const Scene& scene, const Scene& other, const Expectation& expected,
-                 bool in_reverse = false) {
+                 bool in_reverse) {
   Simulation a = test::make_simulation(scene);
   Simulation b = test::make_simulation(other);
   EXPECT_TRUE(a.advance(kSteps).events.empty());
@@ -83,54 +84,38 @@ constexpr Real kRoundOff = 1e-15 * 59049;
 
 class Invariance : public testing::TestWithParam<IntegratorId> {};
 
-TEST_P(Invariance, Rotation) {
-  const Scene scene = make_heap(GetParam());
+TEST_P(Invariance, OfTransformedScenes) {
+  const Scene heap = make_heap(GetParam());
+  const Scene in_vat = make_heap_in_vat(GetParam());
   const Quat rotation(Eigen::AngleAxis<Real>(1.1, Vec3(1, 2, -0.5).normalized()));
-  const Compared result = compare(scene, rotated(scene, rotation),
-                                  [&](const Vec3& x, Real) { return Vec3(rotation * x); });
-  EXPECT_GT(result.contact_energy, 1e-3);
-  EXPECT_LT(result.apart, kRoundOff);
-}
-
-TEST_P(Invariance, Translation) {
-  const Scene scene = make_heap_in_vat(GetParam());
   const Vec3 offset(3.3, -7.1, 5.7);
-  const Compared result = compare(scene, translated(scene, offset),
-                                  [&](const Vec3& x, Real) { return Vec3(x + offset); });
-  EXPECT_GT(result.contact_energy, 1e-3);
-  EXPECT_LT(result.apart, kRoundOff);
-}
-
-TEST_P(Invariance, MovingFrame) {
-  const Scene scene = make_heap(GetParam());
   const Vec3 velocity(2, -3, 1);
-  const Compared result = compare(scene, in_moving_frame(scene, velocity),
-                                  [&](const Vec3& x, Real t) { return Vec3(x + t * velocity); });
-  EXPECT_GT(result.contact_energy, 1e-3);
-  EXPECT_LT(result.apart, kRoundOff);
+  struct Case {
+    const char* name;
+    const Scene& scene;
+    Scene other;
+    Expectation expected;
+    bool in_reverse = false;
+  };
+  const Case cases[] = {
+      {"rotation", heap, rotated(heap, rotation),
+       [&](const Vec3& x, Real) { return Vec3(rotation * x); }},
+      {"translation", in_vat, translated(in_vat, offset),
+       [&](const Vec3& x, Real) { return Vec3(x + offset); }},
+      {"moving frame", heap, in_moving_frame(heap, velocity),
+       [&](const Vec3& x, Real t) { return Vec3(x + t * velocity); }},
+      {"mirror image", in_vat, mirrored(in_vat),
+       [](const Vec3& x, Real) { return Vec3(-x.x(), x.y(), x.z()); }},
+      {"renumbering", in_vat, renumbered(in_vat), [](const Vec3& x, Real) { return x; }, true}};
+  for (const Case& one : cases) {
+    SCOPED_TRACE(one.name);
+    const Compared result = compare(one.scene, one.other, one.expected, one.in_reverse);
+    EXPECT_GT(result.contact_energy, 1e-3);
+    EXPECT_LT(result.apart, kRoundOff);
+  }
 }
 
-TEST_P(Invariance, MirrorImage) {
-  const Scene scene = make_heap_in_vat(GetParam());
-  const Compared result = compare(scene, mirrored(scene),
-                                  [](const Vec3& x, Real) { return Vec3(-x.x(), x.y(), x.z()); });
-  EXPECT_GT(result.contact_energy, 1e-3);
-  EXPECT_LT(result.apart, kRoundOff);
-}
-
-TEST_P(Invariance, Renumbering) {
-  const Scene scene = make_heap_in_vat(GetParam());
-  const Compared result = compare(
-      scene, renumbered(scene), [](const Vec3& x, Real) { return x; }, true);
-  EXPECT_GT(result.contact_energy, 1e-3);
-  EXPECT_LT(result.apart, kRoundOff);
-}
-
-std::string integrator_name(const testing::TestParamInfo<IntegratorId>& info) {
-  return to_string(info.param);
-}
-
-INSTANTIATE_TEST_SUITE_P(All, Invariance, testing::ValuesIn(test::kIntegrators), integrator_name);
+INSTANTIATE_TEST_SUITE_P(All, Invariance, testing::ValuesIn(test::kIntegrators), test::NameOf());
 
 }  // namespace
 }  // namespace vat::stability::invariance_test

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "tests/stability/builders.h"
+#include "tests/support/totals.h"
 
 namespace vat::stability {
 namespace {
@@ -79,12 +80,6 @@ Vec3 wall_force(const Vat& vat, const VatPose& pose, const InterfaceConstants& l
   return force;
 }
 
-Vec3 momentum_of(const Diagnostics& now) {
-  Vec3 sum = Vec3::Zero();
-  for (const BodyDiagnostics& body : now.bodies) sum += body.linear_momentum;
-  return sum;
-}
-
 Real pressure_energy(const Scene& scene, const Diagnostics& now) {
   Real energy = 0;
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
@@ -138,7 +133,7 @@ bool Ledger::closes(const Scene& scene) {
 Ledger::Ledger(const Simulation& simulation)
     : scene_(simulation.scene()), last_(outside(simulation)) {
   const Diagnostics start = simulation.diagnostics();
-  momentum_ = momentum_of(start);
+  momentum_ = test::totals_of(start).momentum;
   energy_ = mechanical(start);
   Scene verlet = scene_;
   verlet.numerics.integrator = IntegratorId::velocity_verlet;
@@ -157,15 +152,10 @@ void Ledger::add_step(const Simulation& simulation, const Diagnostics& now) {
     rounding_ += dt * next.rounding;
   }
   last_ = next;
-  Real motion = 0;
-  for (const BodyView& body : simulation.bodies()) {
-    for (std::size_t i = 0; i < body.masses.size(); ++i) {
-      motion += body.masses[i] * body.velocities[i].norm();
-    }
-  }
+  const Real motion = test::motion_of(simulation).momentum;
   if (is_start) moved_ = motion + 1e-300;
-  momentum_error_ =
-      std::max(momentum_error_, (momentum_of(now) - momentum_).norm() / (moved_ + motion));
+  momentum_error_ = std::max(
+      momentum_error_, (test::totals_of(now).momentum - momentum_).norm() / (moved_ + motion));
   energy_excess_ = std::max(energy_excess_, mechanical(now) - energy_);
   energy_scale_ =
       std::max(energy_scale_, now.kinetic_energy + now.elastic_energy + now.contact_energy);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "tests/stability/builders.h"
+#include "tests/support/totals.h"
 
 namespace vat::stability {
 namespace {
@@ -14,17 +15,6 @@ namespace {
 /// some dozen operations per step. The worst case would be linear.
 Real round_off(std::uint64_t steps) {
   return 12 * 1.2e-16 * std::sqrt(static_cast<Real>(steps)) + 1e-15;
-}
-
-Vec3 long_momentum_of(const Diagnostics& now) {
-  Vec3 sum = Vec3::Zero();
-  for (const BodyDiagnostics& body : now.bodies) sum += body.linear_momentum;
-  return sum;
-}
-Vec3 angular_momentum_of(const Diagnostics& now) {
-  Vec3 sum = Vec3::Zero();
-  for (const BodyDiagnostics& body : now.bodies) sum += body.angular_momentum;
-  return sum;
 }
 Real energy_of(const Diagnostics& now) {
   return now.kinetic_energy + now.elastic_energy + now.contact_energy + now.gravitational_energy;
@@ -135,17 +125,17 @@ std::vector<LongRunRow> run_spring_cube(std::uint64_t steps) {
   Real elastic = 0;
   const Run run = watch_run(scene, steps, [&](const Simulation&, const Diagnostics& now) {
     if (energy.values.empty()) {
-      momentum = long_momentum_of(now);
-      angular_momentum = angular_momentum_of(now);
+      momentum = test::totals_of(now).momentum;
+      angular_momentum = test::totals_of(now).angular_momentum;
     }
     energy.values.push_back(energy_of(now));
     elastic = std::max(elastic, now.elastic_energy);
-    momentum_error = std::max(momentum_error, (long_momentum_of(now) - momentum).norm());
+    momentum_error = std::max(momentum_error, (test::totals_of(now).momentum - momentum).norm());
     // Angular momentum is about the origin. The centre of mass moves away, and the terms of L grow
     // with its distance.
     const Real size = 1 + now.bodies[0].center_of_mass.norm();
-    angular_error =
-        std::max(angular_error, (angular_momentum_of(now) - angular_momentum).norm() / size);
+    angular_error = std::max(
+        angular_error, (test::totals_of(now).angular_momentum - angular_momentum).norm() / size);
   });
   // Modified energy: z^2 (K / 6 + U / 12) at both ends, for the energy that moves in the springs.
   const Real phase = 2 * scene.numerics.step / least_step_limit(scene);
@@ -180,9 +170,9 @@ std::vector<LongRunRow> run_top(std::uint64_t steps) {
   Vec3 angular_momentum;
   Real error = 0;
   const Run run = watch_run(scene, steps, [&](const Simulation&, const Diagnostics& now) {
-    if (energy.values.empty()) angular_momentum = angular_momentum_of(now);
+    if (energy.values.empty()) angular_momentum = test::totals_of(now).angular_momentum;
     energy.values.push_back(energy_of(now));
-    error = std::max(error, (angular_momentum_of(now) - angular_momentum).norm());
+    error = std::max(error, (test::totals_of(now).angular_momentum - angular_momentum).norm());
   });
   // A symmetric splitting of fourth order in dt times the rotation rate |L| / I_min, with a
   // constant of order one. Angular momentum is part of the state, and no torque acts.

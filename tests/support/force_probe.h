@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <numeric>
 #include <vector>
 
 #include "core/evaluation/force_model.h"
@@ -11,14 +12,18 @@
 
 namespace vat::test {
 
+/// Compiles a scene. The ids of its bodies are 1, 2, ...
+inline std::shared_ptr<const Model> compile_scene(const Scene& scene) {
+  std::vector<BodyId> ids(scene.bodies.size());
+  std::iota(ids.begin(), ids.end(), BodyId{1});
+  return compile(scene, ids, std::vector<std::shared_ptr<const SampledBody>>(ids.size()));
+}
+
 /// The forces of one configuration: compiles a scene and runs its plan without integration.
 class ForceProbe {
  public:
-  explicit ForceProbe(const Scene& scene, TaskRunner* runner = nullptr) : runner_(runner) {
-    std::vector<BodyId> ids(scene.bodies.size());
-    for (std::size_t b = 0; b < ids.size(); ++b) ids[b] = static_cast<BodyId>(b + 1);
-    model_ = compile(scene, ids, std::vector<std::shared_ptr<const SampledBody>>(ids.size()));
-    state_ = initial_state(*model_);
+  explicit ForceProbe(const Scene& scene, TaskRunner* runner = nullptr)
+      : model_(compile_scene(scene)), state_(initial_state(*model_)), runner_(runner) {
     evaluate();
   }
 

@@ -17,14 +17,16 @@ namespace vat::test {
 inline constexpr std::array kIntegrators = {
     IntegratorId::explicit_euler, IntegratorId::symplectic_euler, IntegratorId::velocity_verlet,
     IntegratorId::heun, IntegratorId::runge_kutta_4};
+inline constexpr std::array kBodyKinds = {BodyKind::liquid, BodyKind::deformable, BodyKind::rigid};
 
 /// A scene without bodies, gravity and vat. A tick has one step.
-inline Scene make_scene(IntegratorId integrator, Real step) {
+inline Scene make_scene(IntegratorId integrator, Real step, std::vector<Material> materials = {}) {
   Scene scene;
   scene.name = "test";
   scene.pressure_solver = PressureSolver::gas;
   scene.gravity = Vec3::Zero();
   scene.numerics = {integrator, step, step};
+  scene.materials = std::move(materials);
   return scene;
 }
 
@@ -86,6 +88,19 @@ inline std::vector<SpringDescription> join_near(const std::vector<Vec3>& points,
   return springs;
 }
 
+/// A mass of 1 kg at x = `length`, on a spring of rest length 1 m to a fixed particle at the
+/// origin.
+inline Scene make_oscillator(IntegratorId integrator, Real step, const SpringConstants& constants,
+                             Real length) {
+  Scene scene = make_scene(integrator, step);
+  scene.materials = {make_material("rubber")};
+  ParticleShape shape = make_particles({{0, 0, 0}, {length, 0, 0}}, 1);
+  shape.fixed = {0};
+  scene.bodies = {make_body("oscillator", BodyKind::deformable, "rubber", shape, 0.01)};
+  scene.bodies[0].springs = {{0, 1, constants, 1.0}};
+  return scene;
+}
+
 /// Creates a simulation. Throws if the scene is invalid.
 inline Simulation make_simulation(const Scene& scene, TaskRunner* runner = nullptr) {
   Result<Simulation> result = Simulation::create(scene, runner);
@@ -95,6 +110,13 @@ inline Simulation make_simulation(const Scene& scene, TaskRunner* runner = nullp
     throw std::runtime_error(text);
   }
   return std::move(result).value();
+}
+
+/// Creates a simulation and takes `steps` steps.
+inline Simulation make_advanced(const Scene& scene, std::uint32_t steps) {
+  Simulation simulation = make_simulation(scene);
+  simulation.advance(steps);
+  return simulation;
 }
 
 /// Advances to `time`. Throws if the guard acts, which must not happen in a scene that uses this

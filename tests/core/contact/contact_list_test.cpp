@@ -10,10 +10,8 @@
 #include "tests/support/force_probe.h"
 #include "tests/support/mixed_scenes.h"
 
-namespace vat::contact_list_test {
+namespace vat::test::contact_list_test {
 namespace {
-
-using namespace test;
 
 /// Bodies of all kinds, some near each other and some not.
 Scene make_crowd() {
@@ -127,11 +125,8 @@ void expect_all_contacts_of_moving(const Scene& scene) {
 }
 
 TEST(ContactList, HasAllContactsWhileItIsKept) {
-  expect_all_contacts_of_moving(make_crowd());
-}
-
-TEST(ContactList, HasAllContactsAcrossTheSeamsOfAPeriodicWorld) {
   Scene scene = make_crowd();
+  expect_all_contacts_of_moving(scene);
   scene.bodies.pop_back();
   scene.periodic = Periodicity{{-0.09, -0.5, -0.5}, {0.28, 0.5, 0.5}, {true, false, false}};
   expect_all_contacts_of_moving(scene);
@@ -177,21 +172,7 @@ Scene make_roll() {
   return scene;
 }
 
-TEST(ContactList, OfABodyWithItselfIsKeptInRigidMotion) {
-  Moved moved(make_roll());
-  std::vector<Vec3>& positions = moved.probe.state().now.position;
-  const std::vector<Vec3> start = positions;
-  SelfContactList list(moved.probe.model().bodies[0].particles);
-  EXPECT_TRUE(list.update(moved.context(), 0));
-  for (int n = 1; n < 20; ++n) {
-    const Eigen::AngleAxis<Real> turn(0.3 * n, Vec3(1, 2, 3).normalized());
-    for (std::size_t i = 0; i < start.size(); ++i) {
-      positions[i] = turn * start[i] + Vec3(n, 0, -2 * n);
-    }
-    EXPECT_FALSE(list.update(moved.context(), 0)) << n;
-  }
-}
-
+// The list is kept in rigid motion, and made again when the shape has changed.
 TEST(ContactList, OfABodyWithItselfHasAllContactsWhileItChangesItsShape) {
   Moved moved(make_roll());
   std::vector<Vec3>& positions = moved.probe.state().now.position;
@@ -203,7 +184,8 @@ TEST(ContactList, OfABodyWithItselfHasAllContactsWhileItChangesItsShape) {
   for (int n = 0; n < 100; ++n) {
     const Eigen::AngleAxis<Real> turn(0.05 * n, Vec3(1, 2, 3).normalized());
     positions = roll(0.01 * n);
-    for (Vec3& p : positions) p = turn * p + Vec3(way(random), way(random), way(random));
+    const Vec3 shift(0.05 * n, 0, -0.1 * n);
+    for (Vec3& p : positions) p = turn * p + shift + Vec3(way(random), way(random), way(random));
     searches += alone.update(moved.context(), 0) ? 1 : 0;
     moved.update(0);
     contacts = expect_all_contacts(moved, 0);
@@ -214,4 +196,4 @@ TEST(ContactList, OfABodyWithItselfHasAllContactsWhileItChangesItsShape) {
 }
 
 }  // namespace
-}  // namespace vat::contact_list_test
+}  // namespace vat::test::contact_list_test

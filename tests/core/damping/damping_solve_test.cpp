@@ -4,11 +4,11 @@
 
 #include "core/stepping/stepper.h"
 #include "tests/support/force_probe.h"
+#include "tests/support/same_bits.h"
 #include "tests/support/scenes.h"
-#include "tests/support/thread_runner.h"
 #include "tests/support/totals.h"
 
-namespace vat::damping_solve_test {
+namespace vat::test::damping_solve_test {
 namespace {
 
 constexpr Real kStep = 0.01;
@@ -16,33 +16,32 @@ constexpr Real kStep = 0.01;
 /// A block of n^3 particles that move against one another. The damping of its springs exceeds the
 /// stability limit of explicit steps of kStep.
 Scene make_damped_block(int n = 3) {
-  Scene scene = test::make_scene(IntegratorId::velocity_verlet, kStep);
-  scene.materials = {test::make_material("gum")};
-  ParticleShape shape = test::make_particles(test::make_lattice(n, n, n, 0.1), 0.1);
+  Scene scene = make_scene(IntegratorId::velocity_verlet, kStep, {make_material("gum")});
+  ParticleShape shape = make_particles(make_lattice(n, n, n, 0.1), 0.1);
   for (std::size_t i = 0; i < shape.positions.size(); ++i) {
     const auto x = static_cast<Real>(i);
     shape.velocities.push_back(0.1 * Vec3(std::sin(x), std::cos(2 * x), std::sin(3 * x)));
   }
-  scene.bodies = {test::make_body("block", BodyKind::deformable, "gum", shape, 0.01)};
+  scene.bodies = {make_body("block", BodyKind::deformable, "gum", shape, 0.01)};
   const auto& positions = std::get<ParticleShape>(scene.bodies[0].shape).positions;
-  scene.bodies[0].springs = test::join_near(positions, 0.15, {1, 5});
+  scene.bodies[0].springs = join_near(positions, 0.15, {1, 5});
   return scene;
 }
 
 /// A viscous drop with nu dt / h^2 = 1.
 Scene make_viscous_drop() {
-  Scene scene = test::make_scene(IntegratorId::velocity_verlet, kStep);
-  scene.materials = {test::make_liquid("tar", 1000, {1, 4000, 0.2})};
-  ParticleShape shape = test::make_particles(test::make_lattice(6, 6, 6, 0.1), 1);
+  Scene scene =
+      make_scene(IntegratorId::velocity_verlet, kStep, {make_liquid("tar", 1000, {1, 4000, 0.2})});
+  ParticleShape shape = make_particles(make_lattice(6, 6, 6, 0.1), 1);
   for (const Vec3& x : shape.positions) shape.velocities.push_back({x.z(), 0, -x.x() * x.x()});
-  scene.bodies = {test::make_body("drop", BodyKind::liquid, "tar", shape, 0.05)};
+  scene.bodies = {make_body("drop", BodyKind::liquid, "tar", shape, 0.05)};
   return scene;
 }
 
 /// A viscous liquid in an endless channel. Floor and lid move and drag the liquid along.
 Scene make_viscous_channel() {
-  Scene scene = test::make_scene(IntegratorId::velocity_verlet, kStep);
-  scene.materials = {test::make_liquid("tar", 1000, {1, 4000, 0.2})};
+  Scene scene =
+      make_scene(IntegratorId::velocity_verlet, kStep, {make_liquid("tar", 1000, {1, 4000, 0.2})});
   scene.dimensions = 2;
   scene.periodic = Periodicity{Vec3::Zero(), Vec3(1, 1, 1), {true, false, false}};
   scene.vat = Vat{Vec3::Zero(), Vec3(1, 1, 0.6), true, {}, {}};
@@ -54,19 +53,19 @@ Scene make_viscous_channel() {
     shape.velocities.push_back({std::sin(n), 0, std::cos(n)});
   }
   shape.masses.assign(60, 10);
-  scene.bodies = {test::make_body("channel", BodyKind::liquid, "tar", shape, 0.05)};
+  scene.bodies = {make_body("channel", BodyKind::liquid, "tar", shape, 0.05)};
   return scene;
 }
 
 /// Two rigid bars and a ball of the block's body kind, pressed together through strong dampers.
 Scene make_damped_contacts() {
   Scene scene = make_damped_block();
-  scene.materials.push_back(test::make_material("steel"));
+  scene.materials.push_back(make_material("steel"));
   scene.default_interface = {10, 50};
   for (const Real side : {-1.0, 1.0}) {
-    ParticleShape bar = test::make_particles(test::make_lattice(5, 1, 1, 0.1), 0.2);
+    ParticleShape bar = make_particles(make_lattice(5, 1, 1, 0.1), 0.2);
     scene.bodies.push_back(
-        test::make_body(side < 0 ? "low" : "high", BodyKind::rigid, "steel", bar, 0.05));
+        make_body(side < 0 ? "low" : "high", BodyKind::rigid, "steel", bar, 0.05));
     scene.bodies.back().position = Vec3(0.03, 0.02, side * 0.14);
     scene.bodies.back().velocity = Vec3(0, 0, -side);
     scene.bodies.back().angular_velocity = Vec3(0, side, 0.5);
@@ -77,7 +76,7 @@ Scene make_damped_contacts() {
 /// Takes one step of velocity Verlet. Returns the relative difference between the forces that the
 /// step stored at its end and the forces of the velocities at its end.
 Real force_error(const Scene& scene) {
-  test::ForceProbe probe(scene);
+  ForceProbe probe(scene);
   const Model& model = probe.model();
   const Controls controls;
   Workspace work;
@@ -113,9 +112,9 @@ TEST(DampingSolve, VelocitiesAreThoseThatTheirOwnDampingLeadsTo) {
 
 TEST(DampingSolve, TakesEnergyAndKeepsMomenta) {
   for (const Scene& scene : {make_damped_block(), make_viscous_drop(), make_damped_contacts()}) {
-    Simulation simulation = test::make_simulation(scene);
+    Simulation simulation = make_simulation(scene);
     const Diagnostics start = simulation.diagnostics();
-    const test::Totals before = test::totals_of(start);
+    const Totals before = totals_of(start);
     Real energy = start.kinetic_energy + start.elastic_energy + start.contact_energy;
     for (int n = 0; n < 100; ++n) {
       ASSERT_TRUE(simulation.advance(1).events.empty());
@@ -126,7 +125,7 @@ TEST(DampingSolve, TakesEnergyAndKeepsMomenta) {
         EXPECT_LT(left, energy * (1 + 1e-9)) << n;
       }
       energy = left;
-      const test::Totals after = test::totals_of(now);
+      const Totals after = totals_of(now);
       EXPECT_LT((after.momentum - before.momentum).norm(), 1e-12);
       // Viscosity acts along velocities, not along the line between particles, so it does not
       // conserve angular momentum.
@@ -142,18 +141,18 @@ TEST(DampingSolve, DoesNotMoveAHeldBody) {
   Scene scene = make_damped_contacts();
   scene.bodies[1].fixed = true;
   scene.bodies[1].velocity = scene.bodies[1].angular_velocity = Vec3::Zero();
-  Simulation simulation = test::make_simulation(scene);
-  const Vec3 start = test::position_of(simulation, 1);
+  Simulation simulation = make_simulation(scene);
+  const Vec3 start = position_of(simulation, 1);
   EXPECT_GT(simulation.diagnostics().bodies[1].outer_force.norm(), 0);
   simulation.advance(50);
-  EXPECT_EQ(test::position_of(simulation, 1), start);
+  EXPECT_EQ(position_of(simulation, 1), start);
 }
 
 TEST(DampingSolve, LightDampingNeedsNone) {
   Scene scene = make_damped_block();
   scene.bodies[0].springs =
-      test::join_near(std::get<ParticleShape>(scene.bodies[0].shape).positions, 0.15, {1, 0.01});
-  test::ForceProbe probe(scene);
+      join_near(std::get<ParticleShape>(scene.bodies[0].shape).positions, 0.15, {1, 0.01});
+  ForceProbe probe(scene);
   const Controls controls;
   Workspace work;
   const ForceModel force_model{probe.model(), controls, work};
@@ -167,13 +166,13 @@ TEST(DampingSolve, LightDampingNeedsNone) {
 TEST(DampingSolve, LeavesOutBlocksWithoutDampers) {
   Scene scene = make_damped_contacts();
   scene.pressure_solver = PressureSolver::tait;
-  scene.materials.push_back(test::make_liquid("water", 1000, {400, 0, 0.2}));
-  const ParticleShape shape = test::make_particles(test::make_lattice(8, 8, 8, 0.1), 1);
+  scene.materials.push_back(make_liquid("water", 1000, {400, 0, 0.2}));
+  const ParticleShape shape = make_particles(make_lattice(8, 8, 8, 0.1), 1);
   scene.bodies.erase(scene.bodies.begin());  // the block, whose springs have dampers
   scene.bodies[1].position.z() = scene.bodies[0].position.z() + 0.08;
-  scene.bodies.push_back(test::make_body("pool", BodyKind::liquid, "water", shape, 0.05));
+  scene.bodies.push_back(make_body("pool", BodyKind::liquid, "water", shape, 0.05));
   scene.bodies.back().position = {5, 0, 0};
-  test::ForceProbe probe(scene);
+  ForceProbe probe(scene);
   ASSERT_EQ(probe.model().liquid_count, 2 * kBlockSize);
   const Controls controls;
   Workspace work;
@@ -188,23 +187,15 @@ TEST(DampingSolve, LeavesOutBlocksWithoutDampers) {
 }
 
 TEST(DampingSolve, GivesTheSameBitsForAnyNumberOfThreads) {
-  std::vector<std::uint64_t> hashes;
-  for (const unsigned threads : {1U, 2U, 4U}) {
-    test::ThreadRunner runner(threads);
-    Scene scene = make_damped_block(9);
-    scene.materials.push_back(make_viscous_drop().materials[0]);
-    ParticleShape shape = test::make_particles(test::make_lattice(9, 9, 9, 0.1), 1);
-    for (const Vec3& x : shape.positions) shape.velocities.push_back({x.z(), x.x(), 0});
-    scene.bodies.push_back(make_viscous_drop().bodies[0]);
-    scene.bodies[1].shape = shape;
-    scene.bodies[1].position = {2, 0, 0};
-    Simulation simulation = test::make_simulation(scene, &runner);
-    simulation.advance(5);
-    hashes.push_back(simulation.state_hash());
-  }
-  EXPECT_EQ(hashes[0], hashes[1]);
-  EXPECT_EQ(hashes[0], hashes[2]);
+  Scene scene = make_damped_block(9);
+  scene.materials.push_back(make_viscous_drop().materials[0]);
+  ParticleShape shape = make_particles(make_lattice(9, 9, 9, 0.1), 1);
+  for (const Vec3& x : shape.positions) shape.velocities.push_back({x.z(), x.x(), 0});
+  scene.bodies.push_back(make_viscous_drop().bodies[0]);
+  scene.bodies[1].shape = shape;
+  scene.bodies[1].position = {2, 0, 0};
+  expect_same_bits(scene, 5, 1);
 }
 
 }  // namespace
-}  // namespace vat::damping_solve_test
+}  // namespace vat::test::damping_solve_test

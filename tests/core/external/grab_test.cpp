@@ -8,10 +8,8 @@
 #include "tests/support/errors.h"
 #include "tests/support/shaken_vat.h"
 
-namespace vat::grab_test {
+namespace vat::test::grab_test {
 namespace {
-
-using namespace test;
 
 constexpr Real kStep = 1e-3;
 constexpr Real kNan = std::numeric_limits<Real>::quiet_NaN();
@@ -164,4 +162,4 @@ TEST(Grab, RefusesBadValues) {
 }
 
 }  // namespace
-}  // namespace vat::grab_test
+}  // namespace vat::test::grab_test

@@ -3,14 +3,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "tests/support/errors.h"
+#include "tests/support/name_of.h"
 #include "tests/support/saved_bits.h"
 #include "tests/support/scenes.h"
 
 /// Driven bodies, and bodies with axles.
-namespace vat::guided_body_test {
+namespace vat::test::guided_body_test {
 namespace {
-
-using namespace test;
 
 constexpr Real kStep = 0.01;
 const SlideMotion kSlide{{1, 0, 2}, 0.3, 0.8};
@@ -88,15 +88,13 @@ TEST_P(GuidedBody, ContinuesFromItsBytes) {
   Scene scene = scene_of(GetParam(), {driven({0, 0, 0}), wheel({0, 1, 0}, 0.01)});
   scene.bodies[1].position = {2, 0, 0};
   scene.bodies[1].angular_velocity = {0, 3, 0};
-  Simulation simulation = make_simulation(scene);
-  simulation.advance(13);
+  Simulation simulation = make_advanced(scene, 13);
   expect_goes_on(simulation, 10);
 }
 
 TEST_P(GuidedBody, OnAnAxleTurnsByTheTorqueAlongItOnly) {
   const Vec3 direction = Vec3(1, 2, 2) / 3;
   Simulation simulation = make_simulation(scene_of(GetParam(), {wheel(2 * direction, 0)}));
-  const Real moment = moment_about(simulation.bodies()[0], direction);
   const Vec3 start = simulation.bodies()[0].positions[0];
   // Equal accelerations of all particles have no torque.
   ASSERT_TRUE(simulation.apply_force(simulation.bodies()[0].id, {5, 3, 1}, 0.1));
@@ -109,7 +107,7 @@ TEST_P(GuidedBody, OnAnAxleTurnsByTheTorqueAlongItOnly) {
   const RigidPose pose = *simulation.bodies()[0].pose;
   EXPECT_LT(pose.center_of_mass.norm(), 1e-15);
   EXPECT_LT(pose.angular_velocity.cross(direction).norm(), 1e-9 * pose.angular_velocity.norm());
-  EXPECT_GT(pose.angular_velocity.norm() * moment, 0);
+  EXPECT_GT(pose.angular_velocity.norm(), 0.1);
 }
 
 TEST_P(GuidedBody, OnAnAxleTurnsSteadilyAndSlowsDownByItsBrake) {
@@ -149,13 +147,11 @@ TEST(GuidedBodyTorque, IsTheSumOfContactsAboutTheAxle) {
 TEST(GuidedBodyCommands, MoveAGuidedBodyWithoutAVelocity) {
   Scene scene = scene_of(IntegratorId::velocity_verlet, {driven({0, 0, 0}), wheel({0, 1, 0}, 0)});
   scene.bodies[1].position = {2, 0, 0};
-  Simulation simulation = make_simulation(scene);
-  simulation.advance(20);
+  Simulation simulation = make_advanced(scene, 20);
   for (const std::size_t b : {0U, 1U}) {
     const BodyId id = simulation.bodies()[b].id;
-    const Status refused = simulation.move_body(id, {{5, 0, 1}, {}, Vec3(1, 0, 0)});
-    ASSERT_FALSE(refused);
-    EXPECT_EQ(refused.errors()[0].path, "/velocity");
+    EXPECT_EQ(errors_of(simulation.move_body(id, {{5, 0, 1}, {}, Vec3(1, 0, 0)})),
+              "not_allowed /velocity");
     ASSERT_TRUE(simulation.move_body(id, {{5, Real(b), 1}, {}, Vec3::Zero()}));
   }
   const Real time = simulation.time();
@@ -170,8 +166,7 @@ TEST(GuidedBodySleep, NothingSleepsBesideADrivenBody) {
       scene_of(IntegratorId::velocity_verlet, {driven({0, 0, 0}), plate("still", {3, 0, 0})});
   scene.gravity = Vec3::Zero();
   scene.sleeping = Sleeping{0.01, 0.05};
-  Simulation simulation = make_simulation(scene);
-  simulation.advance(50);
+  Simulation simulation = make_advanced(scene, 50);
   EXPECT_EQ(simulation.sleeping_body_count(), 0U);
   scene.bodies[0].motion.reset();
   simulation = make_simulation(scene);
@@ -179,8 +174,7 @@ TEST(GuidedBodySleep, NothingSleepsBesideADrivenBody) {
   EXPECT_EQ(simulation.sleeping_body_count(), 2U);
 }
 
-INSTANTIATE_TEST_SUITE_P(Integrators, GuidedBody, testing::ValuesIn(kIntegrators),
-                         [](const auto& integrator) { return to_string(integrator.param); });
+INSTANTIATE_TEST_SUITE_P(Integrators, GuidedBody, testing::ValuesIn(kIntegrators), NameOf());
 
 }  // namespace
-}  // namespace vat::guided_body_test
+}  // namespace vat::test::guided_body_test

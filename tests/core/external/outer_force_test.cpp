@@ -3,21 +3,20 @@
 #include "tests/support/scenes.h"
 
 /// Forces of walls and other bodies on a body, as reported by the diagnostics.
-namespace vat::outer_force_test {
+namespace vat::test::outer_force_test {
 namespace {
 
 constexpr Real kRadius = 0.05;
 
 BodyDescription block(const char* name, BodyKind kind, const Vec3& position) {
-  BodyDescription body = test::make_body(
-      name, kind, "stone", test::make_particles(test::make_lattice(2, 2, 2, 0.1), 5), kRadius);
+  BodyDescription body =
+      make_body(name, kind, "stone", make_particles(make_lattice(2, 2, 2, 0.1), 5), kRadius);
   body.position = position;
   return body;
 }
 
 Scene scene_of(std::vector<BodyDescription> bodies) {
-  Scene scene = test::make_scene(IntegratorId::velocity_verlet, 1e-4);
-  scene.materials = {test::make_material("stone")};
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-4, {make_material("stone")});
   scene.default_interface = {1e4, 10};
   scene.bodies = std::move(bodies);
   return scene;
@@ -30,7 +29,7 @@ TEST(OuterForce, OnABlockThatRestsOnTheFloorIsItsWeight) {
   Scene scene = scene_of({block("block", BodyKind::rigid, {0, 0, 0.1 - sag})});
   scene.gravity = {0, 0, -9.81};
   scene.vat = Vat{{-1, -1, 0}, {1, 1, 1}, false, {}};
-  Simulation simulation = test::make_simulation(scene);
+  Simulation simulation = make_simulation(scene);
   ASSERT_TRUE(simulation.apply_force(simulation.bodies()[0].id, {7, 0, 0}, 1));
   ASSERT_TRUE(simulation.grab_start(1, simulation.bodies()[0].id, 0, {0, 0, 1}));
   const BodyDiagnostics at_rest = simulation.diagnostics().bodies[0];
@@ -42,11 +41,11 @@ TEST(OuterForce, TurnsABlockThatStandsOnOneEdge) {
   Scene scene = scene_of({block("block", BodyKind::rigid, {0.01, 0, 0.5})});
   scene.vat = Vat{{-0.08, -1, 0}, {1, 1, 1}, false, {}};
   // The four particles at x = -0.04 overlap the reach of the wall at -0.08 by 0.01.
-  const BodyDiagnostics body = test::make_simulation(scene).diagnostics().bodies[0];
+  const BodyDiagnostics body = make_simulation(scene).diagnostics().bodies[0];
   EXPECT_LT((body.outer_force - Vec3(4 * 100, 0, 0)).norm(), 1e-9);
   EXPECT_LT(body.outer_torque.norm(), 1e-9);  // evenly distributed
   scene.bodies[0].orientation = Quat(Eigen::AngleAxis<Real>(0.1, Vec3::UnitY()));
-  const BodyDiagnostics turned = test::make_simulation(scene).diagnostics().bodies[0];
+  const BodyDiagnostics turned = make_simulation(scene).diagnostics().bodies[0];
   // Along x, the lower particles are at -(cos + sin) / 20 or -(cos - sin) / 20 from the centre.
   const Real near = 0.05 - (0.09 - 0.05 * (std::cos(0.1) + std::sin(0.1)));
   const Real far = 0.05 - (0.09 - 0.05 * (std::cos(0.1) - std::sin(0.1)));
@@ -59,12 +58,11 @@ TEST(OuterForce, TurnsABlockThatStandsOnOneEdge) {
 
 TEST(OuterForce, OfTwoBodiesInContactIsOpposite) {
   BodyDescription bouncer = block("bouncer", BodyKind::deformable, {0.02, 0.01, 0.19});
-  bouncer.springs =
-      test::join_near(std::get<ParticleShape>(bouncer.shape).positions, 0.15, {1000, 1});
+  bouncer.springs = join_near(std::get<ParticleShape>(bouncer.shape).positions, 0.15, {1000, 1});
   bouncer.springs[0].rest_length = 0.2;  // internal forces are not outer forces
   Scene scene = scene_of({block("block", BodyKind::rigid, {0, 0, 0}), bouncer});
   scene.gravity = {0, 0, -9.81};
-  const Diagnostics diagnostics = test::make_simulation(scene).diagnostics();
+  const Diagnostics diagnostics = make_simulation(scene).diagnostics();
   const BodyDiagnostics& a = diagnostics.bodies[0];
   const BodyDiagnostics& b = diagnostics.bodies[1];
   EXPECT_GT(b.outer_force.z(), 1);
@@ -79,11 +77,11 @@ TEST(OuterForce, OnAHeldBodyCarriesItsLoad) {
   BodyDescription table = block("table", BodyKind::rigid, {0, 0, 0});
   table.fixed = true;
   Scene scene = scene_of({table, block("load", BodyKind::rigid, {0, 0, 0.19})});
-  const Diagnostics diagnostics = test::make_simulation(scene).diagnostics();
+  const Diagnostics diagnostics = make_simulation(scene).diagnostics();
   // Four pairs overlap by 0.01 m each.
   EXPECT_NEAR(diagnostics.bodies[0].outer_force.z(), -4 * 100, 1e-8);
   EXPECT_NEAR(diagnostics.bodies[1].outer_force.z(), 4 * 100, 1e-8);
 }
 
 }  // namespace
-}  // namespace vat::outer_force_test
+}  // namespace vat::test::outer_force_test

@@ -4,15 +4,15 @@
 
 #include <random>
 
-#include "core/model/compile.h"
 #include "core/state/rigid_motion.h"
-#include "core/stepping/step_plan.h"
+#include "tests/support/force_probe.h"
+#include "tests/support/name_of.h"
 #include "tests/support/same_bits.h"
 #include "tests/support/scenes.h"
 #include "tests/support/shaken_vat.h"
 
 /// The planes behind the walls' springs.
-namespace vat::hold_inside_test {
+namespace vat::test::hold_inside_test {
 namespace {
 
 constexpr Real kStep = 1e-3;
@@ -20,16 +20,15 @@ constexpr Real kRadius = 0.05;
 
 /// A vat around the origin without wall springs. Its coordinates are not exact in binary.
 Scene make_soft_vat(IntegratorId integrator = IntegratorId::velocity_verlet) {
-  Scene scene = test::make_scene(integrator, kStep);
-  scene.materials = {test::make_material("m")};
+  Scene scene = make_scene(integrator, kStep, {make_material("m")});
   scene.interfaces = {{{"m", kVatMaterial}, {0, 0}, {}}};
   scene.vat = Vat{{-0.9, -1.1, -0.7}, {1.3, 0.9, 1.7}, true, {}};
   return scene;
 }
 
 BodyDescription make_grain(const Vec3& position, const Vec3& velocity) {
-  BodyDescription body = test::make_body("grain", BodyKind::deformable, "m",
-                                         test::make_particles({Vec3::Zero()}, 0.1), kRadius);
+  BodyDescription body =
+      make_body("grain", BodyKind::deformable, "m", make_particles({Vec3::Zero()}, 0.1), kRadius);
   body.position = position;
   body.velocity = velocity;
   return body;
@@ -37,9 +36,8 @@ BodyDescription make_grain(const Vec3& position, const Vec3& velocity) {
 
 /// A brick with three different moments of inertia.
 BodyDescription make_brick(const Vec3& position, const Vec3& velocity, const Vec3& spin) {
-  BodyDescription body =
-      test::make_body("brick", BodyKind::rigid, "m",
-                      test::make_particles(test::make_lattice(4, 3, 2, 0.1), 0.2), kRadius);
+  BodyDescription body = make_body("brick", BodyKind::rigid, "m",
+                                   make_particles(make_lattice(4, 3, 2, 0.1), 0.2), kRadius);
   body.position = position;
   body.velocity = velocity;
   body.angular_velocity = spin;
@@ -49,17 +47,11 @@ BodyDescription make_brick(const Vec3& position, const Vec3& velocity, const Vec
 /// A compiled scene that the tests put into any configuration.
 struct Trial {
   explicit Trial(const Scene& scene)
-      : model(compile(scene, ids_of(scene),
-                      std::vector<std::shared_ptr<const SampledBody>>(scene.bodies.size()))),
+      : model(compile_scene(scene)),
         bounds(guard_bounds(*model)),
         before(initial_state(*model).now),
         now(before) {}
 
-  static std::vector<BodyId> ids_of(const Scene& scene) {
-    std::vector<BodyId> ids;
-    for (BodyId id = 1; id <= scene.bodies.size(); ++id) ids.push_back(id);
-    return ids;
-  }
   std::uint64_t hold(Real time = 0, TaskRunner* runner = nullptr) {
     return enforce_walls(*model, bounds, {time, 0}, before, runner, now);
   }
@@ -85,12 +77,12 @@ TEST_P(HoldInside, AGrainStopsAtThePlaneAndKeepsItsTangentialVelocity) {
     Scene scene = make_soft_vat(GetParam());
     const Vec3 along(wall / 2 == 0 ? 0 : 0.3, wall / 2 == 1 ? 0 : -0.2, wall / 2 == 2 ? 0 : 0.1);
     scene.bodies = {make_grain({0.1, 0, 0.2}, along - 20 * wall_normal(wall))};
-    Simulation simulation = test::make_simulation(scene);
+    Simulation simulation = make_simulation(scene);
     EXPECT_EQ(simulation.advance(200).wall_stops, 1U) << wall;
     const int axis = wall / 2;
     const Real plane = (wall % 2 == 0 ? scene.vat->min : scene.vat->max)[axis];
-    EXPECT_EQ(test::position_of(simulation, 0)[axis], plane) << wall;
-    EXPECT_EQ(test::velocity_of(simulation, 0), along) << wall;
+    EXPECT_EQ(position_of(simulation, 0)[axis], plane) << wall;
+    EXPECT_EQ(velocity_of(simulation, 0), along) << wall;
     EXPECT_EQ(simulation.diagnostics().particles_outside, 0U) << wall;
   }
 }
@@ -103,18 +95,13 @@ TEST_P(HoldInside, TheNextStepHasTheForcesAtThePlane) {
   Scene scene = make_soft_vat(GetParam());
   scene.interfaces[0].constants.stiffness = kStiffness;
   scene.bodies = {make_grain({0, 0, -0.7 + 0.007}, {0, 0, -20})};
-  Simulation simulation = test::make_simulation(scene);
+  Simulation simulation = make_simulation(scene);
   ASSERT_EQ(simulation.advance(1).wall_stops, 1U);
-  const Simulation stopped = [&] {
-    Scene at_plane = scene;
-    at_plane.bodies = {make_grain({0, 0, -0.7 + kInset}, {0, 0, 0})};
-    Simulation result = test::make_simulation(at_plane);
-    result.advance(1);
-    return result;
-  }();
+  scene.bodies = {make_grain({0, 0, -0.7 + kInset}, {0, 0, 0})};
+  const Simulation stopped = make_advanced(scene, 1);
   simulation.advance(1);
-  EXPECT_LT((test::position_of(simulation, 0) - test::position_of(stopped, 0)).norm(), 2 * kInset);
-  EXPECT_LT((test::velocity_of(simulation, 0) - test::velocity_of(stopped, 0)).norm(), 2 * kInset);
+  EXPECT_LT((position_of(simulation, 0) - position_of(stopped, 0)).norm(), 2 * kInset);
+  EXPECT_LT((velocity_of(simulation, 0) - velocity_of(stopped, 0)).norm(), 2 * kInset);
 }
 
 TEST_P(HoldInside, FiftyGravitiesPressNothingThroughTheSoftestWalls) {
@@ -129,7 +116,7 @@ TEST_P(HoldInside, FiftyGravitiesPressNothingThroughTheSoftestWalls) {
     scene.vat->motion = SlideMotion{{1, 0.5, 0}, 0.3, 0.2};
     scene.bodies = {make_grain({0.5, 0.5, 0.5}, {0, 0, 0}),
                     make_brick({-0.1, 0.2, 0.3}, {1, 2, 3}, {5, -7, 3})};
-    Simulation simulation = test::make_simulation(scene);
+    Simulation simulation = make_simulation(scene);
     std::uint64_t stops = 0;
     for (int step = 0; step < 600; ++step) {
       const AdvanceReport report = simulation.advance(1);
@@ -142,8 +129,7 @@ TEST_P(HoldInside, FiftyGravitiesPressNothingThroughTheSoftestWalls) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Integrators, HoldInside, testing::ValuesIn(test::kIntegrators),
-                         [](const auto& integrator) { return to_string(integrator.param); });
+INSTANTIATE_TEST_SUITE_P(Integrators, HoldInside, testing::ValuesIn(kIntegrators), NameOf());
 
 TEST(HoldInsideGrain, TakesTheSpeedOfAWallThatMoves) {
   Scene scene = make_soft_vat();
@@ -179,9 +165,9 @@ TEST(HoldInsideGrain, DisabledWallsDoNotHold) {
   Scene scene = make_soft_vat();
   scene.forces.walls = false;
   scene.bodies = {make_grain({0, 0, 0}, {0, 0, -20})};
-  Simulation simulation = test::make_simulation(scene);
+  Simulation simulation = make_simulation(scene);
   EXPECT_EQ(simulation.advance(60).wall_stops, 0U);
-  EXPECT_LT(test::position_of(simulation, 0).z(), -1);
+  EXPECT_LT(position_of(simulation, 0).z(), -1);
 }
 
 /// Poses and motions in all directions, near every wall and corner of a moving vat.
@@ -234,7 +220,7 @@ TEST(HoldInsideBody, AnImpulseAlongTheNormalsPutsItBackAndAddsNoEnergy) {
 TEST(HoldInsideBody, AFlatFaceStopsWithoutTurning) {
   Scene scene = make_soft_vat();
   scene.bodies = {make_brick({0.2, 0.1, 0}, {1, 0, -4}, {0, 0, 0})};
-  Simulation simulation = test::make_simulation(scene);
+  Simulation simulation = make_simulation(scene);
   EXPECT_EQ(simulation.advance(200).wall_stops, 1U);
   const RigidPose pose = *simulation.bodies()[0].pose;
   EXPECT_NEAR(pose.center_of_mass.z(), -0.7 + 0.05, 1e-15);  // two layers, 0.1 m apart
@@ -245,9 +231,8 @@ TEST(HoldInsideBody, AFlatFaceStopsWithoutTurning) {
 TEST(HoldInsideBody, OneThatTurnedTooFarToFitTurnsBack) {
   Scene scene = make_soft_vat();
   scene.vat = Vat{{-1, -0.1, -0.1}, {1, 0.1, 0.1}, true, {}};
-  scene.bodies = {test::make_body("rod", BodyKind::rigid, "m",
-                                  test::make_particles(test::make_lattice(11, 1, 1, 0.1), 0.1),
-                                  kRadius)};
+  scene.bodies = {make_body("rod", BodyKind::rigid, "m",
+                            make_particles(make_lattice(11, 1, 1, 0.1), 0.1), kRadius)};
   Trial trial(scene);
   trial.now.rigid[0].orientation = Quat(Eigen::AngleAxis<Real>(0.5, Vec3::UnitY()));
   trial.now.rigid[0].angular_momentum = {0, 1, 0};
@@ -262,7 +247,7 @@ TEST(HoldInsideBody, OneThatIsHeldPassesUntilItIsReleased) {
   Scene scene = make_soft_vat();
   scene.bodies = {make_brick({0, 0, 0}, {0, 0, -10}, {0, 0, 0})};
   scene.bodies[0].release = 0.1;
-  Simulation simulation = test::make_simulation(scene);
+  Simulation simulation = make_simulation(scene);
   EXPECT_EQ(simulation.advance(100).wall_stops, 0U);
   EXPECT_EQ(simulation.diagnostics().particles_outside, 24U);
   EXPECT_EQ(simulation.advance(1).wall_stops, 1U);
@@ -270,13 +255,13 @@ TEST(HoldInsideBody, OneThatIsHeldPassesUntilItIsReleased) {
 }
 
 TEST(HoldInsideBits, AreTheSameForAnyThreadsAndSnapshots) {
-  Scene scene = test::make_shaken_vat(IntegratorId::velocity_verlet);
+  Scene scene = make_shaken_vat(IntegratorId::velocity_verlet);
   scene.gravity = {60, -90, -500};
   scene.interfaces = {{{"a", kVatMaterial}, {1, 0}, {}}, {{"b", kVatMaterial}, {1, 0}, {}}};
-  Simulation simulation = test::make_simulation(scene);
+  Simulation simulation = make_simulation(scene);
   EXPECT_GT(simulation.advance(60).wall_stops, 0U);
-  test::expect_same_bits(scene, 60, 20);
+  expect_same_bits(scene, 60, 20);
 }
 
 }  // namespace
-}  // namespace vat::hold_inside_test
+}  // namespace vat::test::hold_inside_test

@@ -9,27 +9,20 @@
 #include "tests/support/scenes.h"
 #include "tests/support/totals.h"
 
-namespace vat::friction_test {
+namespace vat::test::friction_test {
 namespace {
-
-using test::ForceProbe;
-using test::make_body;
-using test::make_particles;
-using test::make_scene;
 
 constexpr Real kStiffness = 500;           // [N/m]
 constexpr Real kRadius = 0.1;              // [m]
 constexpr Real kFriction = 0.4;            // coefficient
 constexpr Real kPush = kStiffness * 0.05;  // [N] overlap force of a pair or at the floor
 
-constexpr BodyKind kKinds[] = {BodyKind::liquid, BodyKind::deformable, BodyKind::rigid};
-
 /// Particles of 1 kg and 2 kg, 0.15 m apart along (3, 0, 4) / 5. The first moves.
 Scene make_pair_scene(const Vec3& velocity, BodyKind first = BodyKind::deformable,
                       BodyKind second = BodyKind::deformable) {
-  Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
-  scene.materials = {test::make_liquid("a", 1000, {0, 0, 0.1}),
-                     test::make_liquid("b", 1000, {0, 0, 0.1})};
+  Scene scene =
+      make_scene(IntegratorId::velocity_verlet, 1e-3,
+                 {make_liquid("a", 1000, {0, 0, 0.1}), make_liquid("b", 1000, {0, 0, 0.1})});
   scene.default_interface = {kStiffness, 0, kFriction};
   scene.bodies = {make_body("moving", first, "a", make_particles({{0, 0, 0}}, 1), kRadius),
                   make_body("resting", second, "b", make_particles({{0.09, 0, 0.12}}, 2), kRadius)};
@@ -50,8 +43,8 @@ Scene make_floor_scene(const Vec3& velocity, BodyKind kind = BodyKind::rigid) {
 }
 
 TEST(Friction, IsTheCoefficientTimesThePushAgainstTheSlip) {
-  for (const BodyKind first : kKinds) {
-    for (const BodyKind second : kKinds) {
+  for (const BodyKind first : kBodyKinds) {
+    for (const BodyKind second : kBodyKinds) {
       const ForceProbe probe(make_pair_scene(3 * kAcross - 4 * Vec3::UnitY(), first, second));
       const Vec3 expected = kPush * (kNormal - kFriction * (0.6 * kAcross - 0.8 * Vec3::UnitY()));
       EXPECT_LT((probe.force(0) - expected).norm(), 1e-12)
@@ -111,7 +104,7 @@ TEST(Friction, OfParticlesInOnePlaceIsOpposite) {
 }
 
 TEST(Friction, ActsAtWalls) {
-  for (const BodyKind kind : kKinds) {
+  for (const BodyKind kind : kBodyKinds) {
     const ForceProbe probe(make_floor_scene({3, -4, 0}, kind));
     const Vec3 expected = kPush * Vec3(-0.6 * kFriction, 0.8 * kFriction, 1);
     EXPECT_LT((probe.force(0) - expected).norm(), 1e-12) << to_string(kind);
@@ -132,19 +125,16 @@ TEST(Friction, SeesTheSlipAlongWallsThatMove) {
 }
 
 TEST(Friction, LoadsParticlesWithItsGreatestRate) {
-  EXPECT_NEAR(ForceProbe(make_pair_scene(kAcross))
-                  .work()
-                  .of<ContactForceScratch>()
-                  .contact_loads[0]
-                  .damping,
-              2 * std::sqrt(kStiffness * 2 / 3), 1e-12);
+  const auto rate = [](const Scene& scene) {
+    return ForceProbe(scene).work().of<ContactForceScratch>().contact_loads[0].damping;
+  };
+  EXPECT_NEAR(rate(make_pair_scene(kAcross)), 2 * std::sqrt(kStiffness * 2 / 3), 1e-12);
   Scene scene = make_floor_scene({1, 0, 0});
-  EXPECT_NEAR(ForceProbe(scene).work().of<ContactForceScratch>().contact_loads[0].damping,
-              std::sqrt(kStiffness), 1e-12);
+  EXPECT_NEAR(rate(scene), std::sqrt(kStiffness), 1e-12);
   scene.default_interface.damping = 30;  // exceeds the friction force, but acts across it
-  EXPECT_EQ(ForceProbe(scene).work().of<ContactForceScratch>().contact_loads[0].damping, 30);
+  EXPECT_EQ(rate(scene), 30);
   scene.default_interface = {kStiffness, 2, 0};
-  EXPECT_EQ(ForceProbe(scene).work().of<ContactForceScratch>().contact_loads[0].damping, 2);
+  EXPECT_EQ(rate(scene), 2);
 }
 
 TEST(Friction, IsKeptForTheSolveAsADragAcrossTheContact) {
@@ -201,9 +191,8 @@ Real slip_left(Real damping) {
   scene.numerics.step = scene.numerics.tick = 1.95 / omega;
   scene.default_interface.damping = damping * omega;
   scene.gravity = {0, 0, -kPush};
-  Simulation simulation = test::make_simulation(scene);
-  simulation.advance(100);
-  return test::velocity_of(simulation, 0).x() / 1e-3;
+  Simulation simulation = make_advanced(scene, 100);
+  return velocity_of(simulation, 0).x() / 1e-3;
 }
 
 // Explicit forces would be unstable at rate dt > 1. The solver then includes friction.
@@ -214,4 +203,4 @@ TEST(Friction, IsStableIfItMustBeSolvedFor) {
 }
 
 }  // namespace
-}  // namespace vat::friction_test
+}  // namespace vat::test::friction_test

@@ -7,10 +7,8 @@
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
-namespace vat::lennard_jones_test {
+namespace vat::test::lennard_jones_test {
 namespace {
-
-using namespace test;
 
 constexpr Real kStiffness = 300;  // [N/m]
 constexpr Real kRest = 0.2;       // [m] l
@@ -66,8 +64,9 @@ TEST(LennardJones, DerivesFromItsEnergyAndItsSlopeFromIt) {
 }
 
 Scene make_layer_scene(Real distance, BodyKind first, BodyKind second) {
-  Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
-  scene.materials = {make_liquid("a", 1000, {0, 0, 0.1}), make_liquid("b", 1000, {0, 0, 0.1})};
+  Scene scene =
+      make_scene(IntegratorId::velocity_verlet, 1e-3,
+                 {make_liquid("a", 1000, {0, 0, 0.1}), make_liquid("b", 1000, {0, 0, 0.1})});
   scene.default_interface = {
       .stiffness = kStiffness, .law = InterfaceLaw::lennard_jones, .reach = kEnd / kRest};
   scene.bodies = {make_body("first", first, "a", make_particles({{0, 0, 0}}, 1), kRest / 2),
@@ -77,8 +76,8 @@ Scene make_layer_scene(Real distance, BodyKind first, BodyKind second) {
 }
 
 TEST(LennardJones, JoinsBodiesOfAllKinds) {
-  for (const BodyKind first : {BodyKind::liquid, BodyKind::deformable, BodyKind::rigid}) {
-    for (const BodyKind second : {BodyKind::liquid, BodyKind::deformable, BodyKind::rigid}) {
+  for (const BodyKind first : kBodyKinds) {
+    for (const BodyKind second : kBodyKinds) {
       for (const Real distance : {0.1, 0.3}) {
         const ForceProbe probe(make_layer_scene(distance, first, second));
         EXPECT_EQ(probe.force(0), Vec3(-probe.force(1)));
@@ -139,4 +138,4 @@ TEST(LennardJones, KeepsEnergyAndMomentumInAllControls) {
 }
 
 }  // namespace
-}  // namespace vat::lennard_jones_test
+}  // namespace vat::test::lennard_jones_test

@@ -6,41 +6,21 @@
 
 #include "tests/support/scenes.h"
 
-namespace vat::restitution_test {
+namespace vat::test::restitution_test {
 namespace {
 
-using namespace test;
-
-// Closed-form values of RIG-4 of the validation.
+// Closed-form values of RIG-4 of the validation. Those above 1 were integrated with steps of 1e-5.
 TEST(Restitution, OfDampingRatiosIsThatOfTheUnilateralSpring) {
   EXPECT_EQ(restitution_of(0), 1);
-  EXPECT_NEAR(restitution_of(0.05), 0.858758102, 1e-9);
-  EXPECT_NEAR(restitution_of(0.1), 0.744079398, 1e-9);
-  EXPECT_NEAR(restitution_of(0.2), 0.571740028, 1e-9);
-  EXPECT_NEAR(restitution_of(0.5), 0.298436059, 1e-9);
-  EXPECT_NEAR(restitution_of(0.7), 0.210284564, 1e-9);
-  EXPECT_NEAR(restitution_of(1), std::exp(-2), 1e-12);
-}
-
-/// Returns the speed at which the force of x'' = -2 zeta x' - x becomes zero. The initial speed is
-/// 1.
-Real parting_speed(Real zeta) {
-  constexpr Real kStep = 1e-4;
-  Real x = 0;
-  Real v = 1;
-  while (x + 2 * zeta * v > 0) {
-    const auto a = [&](Real place, Real speed) { return -place - 2 * zeta * speed; };
-    const Real half_x = x + kStep / 2 * v;
-    const Real half_v = v + kStep / 2 * a(x, v);
-    x += kStep * half_v;
-    v += kStep * a(half_x, half_v);
-  }
-  return -v;
-}
-
-TEST(Restitution, HoldsForStrongDampingToo) {
-  for (const Real zeta : {0.3, 0.9, 0.99, 1.01, 1.5, 3.0}) {
-    EXPECT_NEAR(restitution_of(zeta), parting_speed(zeta), 1e-4) << zeta;
+  for (const auto& [ratio, restitution] : {std::pair{0.05, 0.858758102},
+                                           {0.1, 0.744079398},
+                                           {0.2, 0.571740028},
+                                           {0.5, 0.298436059},
+                                           {0.7, 0.210284564},
+                                           {1.0, std::exp(-2)},
+                                           {1.5, 0.075588309},
+                                           {3.0, 0.023769514}}) {
+    EXPECT_NEAR(restitution_of(ratio), restitution, 1e-9) << ratio;
   }
 }
 
@@ -67,8 +47,7 @@ Real speed_of_parting(Scene scene, Real stiffness, Real reduced_mass, Real resti
   scene.numerics.step = scene.numerics.tick = 5e-3 / rate;
   scene.default_interface = {.stiffness = stiffness, .restitution = restitution};
   scene.bodies[0].velocity = {1, 0, 0};
-  Simulation simulation = make_simulation(scene);
-  simulation.advance(3000);
+  Simulation simulation = make_advanced(scene, 3000);
   const auto contact_speed = [&](std::size_t b, std::size_t particle) {
     return simulation.bodies()[b].velocities[particle].x();
   };
@@ -82,8 +61,7 @@ TEST(Restitution, IsThatOfFreeAndRigidParticlesOfAnyMass) {
   for (const BodyKind kind : {BodyKind::deformable, BodyKind::rigid}) {
     for (const Impact& impact : kImpacts) {
       for (const Real e : kRestitutions) {
-        Scene scene = make_scene(IntegratorId::velocity_verlet, 1);
-        scene.materials = {make_material("steel")};
+        Scene scene = make_scene(IntegratorId::velocity_verlet, 1, {make_material("steel")});
         scene.bodies = {
             make_body("a", kind, "steel", make_particles({{-0.1001, 0, 0}}, impact.first_mass),
                       0.05),
@@ -99,8 +77,7 @@ TEST(Restitution, IsThatOfFreeAndRigidParticlesOfAnyMass) {
 
 /// Two rigid blocks of 3 x 3 x 3 particles, 27 kg in all, flat against each other.
 Scene make_blocks() {
-  Scene scene = make_scene(IntegratorId::velocity_verlet, 1);
-  scene.materials = {make_material("steel")};
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 1, {make_material("steel")});
   const ParticleShape shape = make_particles(make_lattice(3, 3, 3, 0.1), 1);
   scene.bodies = {make_body("a", BodyKind::rigid, "steel", shape, 0.05),
                   make_body("b", BodyKind::rigid, "steel", shape, 0.05)};
@@ -144,11 +121,10 @@ TEST(Restitution, IsThatOfAFallOnTheFloor) {
     scene.vat = Vat{{-1, -1, 0}, {1, 1, 2}, false, {}, {}};
     scene.default_interface = {.stiffness = 1e4, .restitution = e};
     scene.numerics.step = scene.numerics.tick = 5e-3 / std::sqrt(9e4 / 27);
-    Simulation simulation = make_simulation(scene);
-    simulation.advance(3000);
+    Simulation simulation = make_advanced(scene, 3000);
     EXPECT_NEAR(velocity_of(simulation, 0).z(), e, 2 * kHalfStep) << e;
   }
 }
 
 }  // namespace
-}  // namespace vat::restitution_test
+}  // namespace vat::test::restitution_test

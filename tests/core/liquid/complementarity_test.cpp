@@ -7,7 +7,7 @@
 
 #include "tests/support/thread_runner.h"
 
-namespace vat::complementarity_test {
+namespace vat::test::complementarity_test {
 namespace {
 
 /// A = B^T B with few entries per row of B, similar to particles with few neighbours.
@@ -153,7 +153,7 @@ TEST(Complementarity, GivesTheSameBitsForAnyThreads) {
   Complementarity serial = given.start();
   given.solve(serial, {1e-6, 1e-5, 1000});
   for (const std::size_t threads : {2U, 4U}) {
-    test::ThreadRunner runner(threads);
+    ThreadRunner runner(threads);
     Complementarity threaded = given.start();
     given.solve(threaded, {1e-6, 1e-5, 1000}, &runner);
     EXPECT_EQ(threaded.x, serial.x);
@@ -169,4 +169,4 @@ TEST(Complementarity, EndsAtOnceWithNumbersThatAreNone) {
 }
 
 }  // namespace
-}  // namespace vat::complementarity_test
+}  // namespace vat::test::complementarity_test

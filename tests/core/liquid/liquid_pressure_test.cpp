@@ -7,10 +7,8 @@
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
-namespace vat::liquid_pressure_test {
+namespace vat::test::liquid_pressure_test {
 namespace {
-
-using namespace test;
 
 TEST(TaitPressure, IsTaitsEquationUpToThreePercent) {
   for (const Real s : {0.5, 0.99, 1.0, 1.01, 1.03}) {
@@ -33,8 +31,8 @@ TEST(TaitPressure, ContinuesAlongItsTangentFromTwiceTheDensity) {
 constexpr Real kDensity = 1000;
 
 Scene make_liquid_scene(const LiquidConstants& constants, ParticleShape shape) {
-  Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
-  scene.materials = {make_liquid("water", kDensity, constants)};
+  Scene scene =
+      make_scene(IntegratorId::velocity_verlet, 1e-3, {make_liquid("water", kDensity, constants)});
   scene.bodies = {make_body("water", BodyKind::liquid, "water", std::move(shape), 0.5)};
   return scene;
 }
@@ -71,4 +69,4 @@ TEST(GasPressure, OfAPairIsTheFormula) {
 }
 
 }  // namespace
-}  // namespace vat::liquid_pressure_test
+}  // namespace vat::test::liquid_pressure_test

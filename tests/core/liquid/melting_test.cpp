@@ -4,14 +4,13 @@
 #include "core/validation/validate.h"
 #include "tests/support/edited_scene.h"
 #include "tests/support/errors.h"
+#include "tests/support/name_of.h"
 #include "tests/support/scenes.h"
 
 // Deformable bodies that become liquid.
 
-namespace vat::melting_test {
+namespace vat::test::melting_test {
 namespace {
-
-using namespace test;
 
 constexpr Real kSpacing = 0.1;
 constexpr Real kStep = 1e-3;
@@ -42,8 +41,7 @@ Scene make_melting_scene(PressureSolver solver) {
 class Melts : public testing::TestWithParam<PressureSolver> {};
 
 TEST_P(Melts, KeepingPlacesVelocitiesAndMassesToTheBit) {
-  Simulation simulation = make_simulation(make_melting_scene(GetParam()));
-  simulation.advance(20);
+  Simulation simulation = make_advanced(make_melting_scene(GetParam()), 20);
   const BodyId id = *simulation.find_body("jelly");
   const BodyView before = *simulation.find_body(id);
   const auto positions = copy_of(before.positions);
@@ -88,8 +86,7 @@ TEST_P(Melts, AtATimeAsByCommandThen) {
 TEST_P(Melts, AgainAfterARestore) {
   Scene scene = make_melting_scene(GetParam());
   scene.bodies[1].melting = Melting{"water", 20 * kStep};
-  Simulation simulation = make_simulation(scene);
-  simulation.advance(10);
+  Simulation simulation = make_advanced(scene, 10);
   const Snapshot solid = simulation.snapshot();
   simulation.advance(30);
   const std::uint64_t melted = simulation.state_hash();
@@ -114,14 +111,13 @@ TEST_P(Melts, DuringGrabsWhichEnd) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Solvers, Melts, testing::Values(PressureSolver::gas, PressureSolver::tait),
-                         [](const auto& solver) { return to_string(solver.param); });
+                         NameOf());
 
 // If the guard ends a call, the state returns to that before the call's events.
 TEST(Melting, InACallThatFailsIsUndone) {
   Scene scene = make_melting_scene(PressureSolver::tait);
   scene.bodies[1].melting = Melting{"water", 5 * kStep};
-  Simulation simulation = make_simulation(scene);
-  simulation.advance(3);
+  Simulation simulation = make_advanced(scene, 3);
   // After about 40 steps the plate is too fast for the guard.
   ASSERT_TRUE(simulation.apply_force(*simulation.find_body("plate"), {0, 0, -3e5}, 1).ok());
   const std::uint64_t hash = simulation.state_hash();
@@ -166,4 +162,4 @@ TEST(Melting, LimitsStepsByTheLiquidToBe) {
 }
 
 }  // namespace
-}  // namespace vat::melting_test
+}  // namespace vat::test::melting_test

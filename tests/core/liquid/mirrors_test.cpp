@@ -6,10 +6,8 @@
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
-namespace vat::mirrors_test {
+namespace vat::test::mirrors_test {
 namespace {
-
-using namespace test;
 
 constexpr Real kSpacing = 0.05;
 
@@ -82,4 +80,4 @@ TEST(Mirrors, ReflectPlacesAtMovingWalls) {
 }
 
 }  // namespace
-}  // namespace vat::mirrors_test
+}  // namespace vat::test::mirrors_test

@@ -8,14 +8,12 @@
 
 #include "core/kernels/half_space.h"
 #include "core/kernels/mueller_kernels.h"
+#include "tests/core/kernels/quadrature.h"
 #include "tests/support/force_probe.h"
-#include "tests/support/quadrature.h"
 #include "tests/support/scenes.h"
 
-namespace vat::no_slip_test {
+namespace vat::test::no_slip_test {
 namespace {
-
-using namespace test;
 
 /// Returns the integral of w(r) over the part of a sphere of radius r (a circle in two dimensions)
 /// beyond a distance d along the normal.
@@ -93,8 +91,8 @@ constexpr Real kMass = 0.2;
 
 /// One liquid particle at `position` in a vat of 1 m. The wall `wall` is no-slip.
 Scene make_wall_scene(int wall, const Vec3& position, const Vec3& velocity) {
-  Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-4);
-  scene.materials = {make_liquid("water", 1000, {0, kViscosity, kSupport})};
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-4,
+                           {make_liquid("water", 1000, {0, kViscosity, kSupport})});
   scene.bodies = {
       make_body("drop", BodyKind::liquid, "water", make_particles({position}, kMass), 0.001)};
   scene.bodies[0].velocity = velocity;
@@ -162,4 +160,4 @@ TEST(NoSlip, CostsNothingWithoutEffect) {
 }
 
 }  // namespace
-}  // namespace vat::no_slip_test
+}  // namespace vat::test::no_slip_test

@@ -11,7 +11,7 @@
 
 // Clusters of targets and their candidates, compared with a search over all pairs.
 
-namespace vat::pair_clusters_test {
+namespace vat::test::pair_clusters_test {
 namespace {
 
 using Points = std::vector<Vec3>;
@@ -107,7 +107,7 @@ void expect_all_pairs(const Cloud& cloud, Real reach, InstructionSet set, TaskRu
 }
 
 TEST(PairClusters, HaveEveryPairOnce) {
-  test::ThreadRunner runner(4);
+  ThreadRunner runner(4);
   const std::vector<Points> points = difficult_points();
   for (std::size_t p = 0; p < points.size(); ++p) {
     const Cloud cloud(points[p], random_points(200, 1.2, 9), 0.1);
@@ -179,7 +179,7 @@ void tell_targets(const PairInputs& in, std::span<const TargetCluster> clusters,
 
 // Some cells contain many targets.
 TEST(PairClusters, GiveEachTargetItsOwnSums) {
-  test::ThreadRunner runner(4);
+  ThreadRunner runner(4);
   Points points = random_points(2000, 1, 4);
   points.insert(points.end(), 1000, Vec3::Zero());
   // The targets follow other sources, as solids do.
@@ -204,4 +204,4 @@ TEST(PairClusters, GiveEachTargetItsOwnSums) {
 }
 
 }  // namespace
-}  // namespace vat::pair_clusters_test
+}  // namespace vat::test::pair_clusters_test

@@ -9,10 +9,8 @@
 
 // The accuracy of single precision, and the cases that need double precision.
 
-namespace vat::pair_precision_test {
+namespace vat::test::pair_precision_test {
 namespace {
-
-using namespace test;
 
 /// A mixture, and a copy of one of its liquid blocks at `distance`.
 Scene make_spread_mixture(PairPrecision precision, Real distance) {
@@ -65,4 +63,4 @@ TEST(PairPrecision, IsDoubleForDistantParticles) {
 }
 
 }  // namespace
-}  // namespace vat::pair_precision_test
+}  // namespace vat::test::pair_precision_test

@@ -8,10 +8,8 @@
 
 // Pairs and densities are reused if no position has changed.
 
-namespace vat::pair_reuse_test {
+namespace vat::test::pair_reuse_test {
 namespace {
-
-using namespace test;
 
 Scene make_wet_vat() {
   Scene scene = make_wet_mixture(IntegratorId::velocity_verlet, PressureSolver::tait);
@@ -58,4 +56,4 @@ TEST(PairReuse, SeesTheLeastMotionOfLiquidsSolidsAndWalls) {
 }
 
 }  // namespace
-}  // namespace vat::pair_reuse_test
+}  // namespace vat::test::pair_reuse_test

@@ -1,23 +1,20 @@
 #include "core/liquid/incompressible/pressure_response.h"
-#include "core/state/controls.h"
-#include "core/stepping/workspace.h"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <random>
 
-#include "core/model/compile.h"
 #include "core/state/rigid_motion.h"
-#include "core/stepping/step_plan.h"
+#include "tests/support/force_probe.h"
 #include "tests/support/mixed_scenes.h"
 
 // Effects of pressures and motions in one state of a liquid with solids and walls.
 
-namespace vat::pressure_response_test {
+namespace vat::test::pressure_response_test {
 namespace {
-
-using namespace test;
 
 /// A liquid that touches two walls, a floor, a deformable body and a rigid body. All bodies move.
 Scene make_pool() {
@@ -44,8 +41,7 @@ Scene make_pool() {
 
 /// Compiles the scene, with the volumes of solids multiplied by `share_of_solids`.
 std::shared_ptr<const Model> compile_with(const Scene& scene, Real share_of_solids) {
-  Model model = *compile(scene, std::vector<BodyId>(scene.bodies.size(), 1),
-                         std::vector<std::shared_ptr<const SampledBody>>(scene.bodies.size()));
+  Model model = *compile_scene(scene);
   for (std::size_t i = model.liquid_count; i < model.particle_count; ++i) {
     model.rest_volume[i] *= share_of_solids;
   }
@@ -171,6 +167,32 @@ TEST(PressureResponse, SeesHowMotionsCompress) {
   }
 }
 
+// The rate of the accelerations is that of the velocities that they lead to.
+TEST(PressureResponse, HasTheRateOfItsKick) {
+  constexpr Real kTime = 0.01;
+  Place place(make_pool());
+  const auto rate_of_velocities = [&] {
+    std::vector<Real> rate(place.count());
+    place.response->see_velocities(Vec3::Zero());
+    place.response->compress(rate);
+    return rate;
+  };
+  const std::vector<Real> before = rate_of_velocities();
+  std::vector<Real> pressure = random_numbers(place.count(), 3);
+  for (Real& p : pressure) p *= 1e4;
+  std::vector<Real> expected(place.count());
+  place.response->accelerate(pressure);
+  place.response->compress(expected);
+  place.response->add(1);
+  place.response->kick(kTime);
+  const std::vector<Real> after = rate_of_velocities();
+  const Real greatest =
+      std::abs(std::ranges::max(expected, {}, [](Real x) { return std::abs(x); }));
+  for (std::size_t s = 0; s < expected.size(); ++s) {
+    EXPECT_NEAR((after[s] - before[s]) / kTime, expected[s], 1e-10 * greatest) << s;
+  }
+}
+
 TEST(PressureResponse, KeepsMomentumWithoutWalls) {
   Scene scene = make_pool();
   scene.vat.reset();
@@ -205,4 +227,4 @@ TEST(PressureResponse, KeepsMomentumWithoutWalls) {
 }
 
 }  // namespace
-}  // namespace vat::pressure_response_test
+}  // namespace vat::test::pressure_response_test

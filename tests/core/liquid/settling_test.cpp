@@ -4,10 +4,8 @@
 
 #include "tests/support/scenes.h"
 
-namespace vat::settling_test {
+namespace vat::test::settling_test {
 namespace {
-
-using namespace test;
 
 /// One liquid particle without neighbours that moves at 2 m/s along y.
 Scene make_lone_drop(Real step, const Settling& settling) {
@@ -52,4 +50,4 @@ TEST(Settling, IsTowardsTheVelocityOfTheVat) {
 }
 
 }  // namespace
-}  // namespace vat::settling_test
+}  // namespace vat::test::settling_test

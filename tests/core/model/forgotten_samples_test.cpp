@@ -6,14 +6,12 @@
 
 // Samples of liquids are released, and computed again on demand.
 
-namespace vat::forgotten_samples_test {
+namespace vat::test::forgotten_samples_test {
 namespace {
 
-using namespace test;
-
 Scene make_mixture() {
-  Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
-  scene.materials = {make_liquid("water", 1000, {100, 0, 0.2}), make_material("wood", 500)};
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3,
+                           {make_liquid("water", 1000, {100, 0, 0.2}), make_material("wood", 500)});
   BodyDescription pool = make_body("pool", BodyKind::liquid, "water", {}, 0.05);
   pool.shape = BoxShape{Vec3::Zero(), Vec3::Constant(0.5)};
   pool.spacing = 0.1;
@@ -61,4 +59,4 @@ TEST(ForgottenSamples, AreNotThoseOfScenesThatFlow) {
 }
 
 }  // namespace
-}  // namespace vat::forgotten_samples_test
+}  // namespace vat::test::forgotten_samples_test

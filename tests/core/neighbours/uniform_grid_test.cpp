@@ -77,14 +77,11 @@ TEST(UniformGrid, EqualsBruteForceOnCellFaces) {
   expect_equals_brute_force(points, 0.1);
 }
 
-TEST(UniformGrid, EqualsBruteForceForDegenerateSets) {
+TEST(UniformGrid, EqualsBruteForceForDegenerateAndFarPoints) {
   expect_equals_brute_force(std::vector<Vec3>(300, Vec3(-0.4, 7, 0)), 0.1, 50);
   std::vector<Vec3> line;
   for (int n = 0; n < 400; ++n) line.push_back({0, 0, 0.013 * n});
   expect_equals_brute_force(line, 0.05);
-}
-
-TEST(UniformGrid, EqualsBruteForceForFarPoints) {
   std::vector<Vec3> points = make_random_points(500, -1, 1, 9);
   points.push_back({1e6, -1e6, 1e6});
   points.push_back({-1e6, 0, 3});

@@ -10,9 +10,10 @@
 #include "core/kernels/smoothing_kernel.h"
 #include "core/liquid/pairs/weakly_compressible_pairs.h"
 #include "core/numerics/step_limits.h"
+#include "tests/support/name_of.h"
 #include "tests/support/scenes.h"
 
-namespace vat::kernel_limits_test {
+namespace vat::test::kernel_limits_test {
 namespace {
 
 // The stable step of a liquid follows from the shortest waves on a cubic lattice. The tests sum
@@ -70,11 +71,11 @@ Rates greatest_rates(KernelId id, Real spacing) {
 
 /// Returns the stable step of a liquid with a given speed of sound or kinematic viscosity.
 Real step_limit(KernelId id, Real speed, Real viscosity) {
-  Scene scene = test::make_scene(IntegratorId::symplectic_euler, 1e-3);
+  Scene scene = make_scene(IntegratorId::symplectic_euler, 1e-3);
   scene.pressure_solver = PressureSolver::tait;
   scene.kernel = id;
   scene.gravity.setZero();
-  scene.materials = {test::make_liquid("water", 1000, {speed * speed, 1000 * viscosity, kSupport})};
+  scene.materials = {make_liquid("water", 1000, {speed * speed, 1000 * viscosity, kSupport})};
   scene.materials[0].liquid->artificial_viscosity = 0;
   scene.bodies = {{"pool", BodyKind::liquid, "water", BoxShape{{0, 0, 0}, {2, 2, 2}}, 0.5}};
   const auto limits = find_step_limits(scene, sample_bodies(scene));
@@ -98,8 +99,7 @@ TEST_P(KernelLimits, AreThoseOfTheShortestWavesOnALattice) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kernels, KernelLimits,
-                         testing::Values(KernelId::wendland_c2, KernelId::cubic_spline),
-                         [](const auto& kernel) { return std::string(to_string(kernel.param)); });
+                         testing::Values(KernelId::wendland_c2, KernelId::cubic_spline), NameOf());
 
 }  // namespace
-}  // namespace vat::kernel_limits_test
+}  // namespace vat::test::kernel_limits_test

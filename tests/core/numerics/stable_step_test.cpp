@@ -10,7 +10,7 @@
 
 #include "tests/support/scenes.h"
 
-namespace vat::stable_step_test {
+namespace vat::test::stable_step_test {
 
 namespace {
 
@@ -45,7 +45,7 @@ TEST(StableStep, OfVelocityVerletDoesNotDependOnDamping) {
 }
 
 TEST(StableStep, OfDampingAloneIsThatOfDecay) {
-  for (const IntegratorId integrator : test::kIntegrators) {
+  for (const IntegratorId integrator : kIntegrators) {
     const Real decay = integrator == IntegratorId::runge_kutta_4 ? 2.785 : 2;
     if (integrator == IntegratorId::velocity_verlet) {
       EXPECT_TRUE(std::isinf(stable_step(integrator, {0, 10})));
@@ -57,4 +57,4 @@ TEST(StableStep, OfDampingAloneIsThatOfDecay) {
 }
 
 }  // namespace
-}  // namespace vat::stable_step_test
+}  // namespace vat::test::stable_step_test

@@ -3,15 +3,15 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/laws/pair_direction.h"
 #include "core/sampling/mass_properties.h"
 #include "tests/support/errors.h"
 #include "tests/support/force_probe.h"
+#include "tests/support/name_of.h"
 #include "tests/support/scenes.h"
 
 /// Two-dimensional scenes: densities, discs, and motion in the plane. Periodic scenes reject bodies
 /// that are too large for the period.
-namespace vat::plane_test {
+namespace vat::test::plane_test {
 namespace {
 
 BodyDescription sampled(const char* name, BodyKind kind, const char* material, Shape shape,
@@ -23,11 +23,11 @@ BodyDescription sampled(const char* name, BodyKind kind, const char* material, S
 
 /// A sliding vat with one body of each kind. All bodies move and are about to touch.
 Scene plane_scene(IntegratorId integrator) {
-  Scene scene = test::make_scene(integrator, 5e-4);
+  Scene scene = make_scene(integrator, 5e-4);
   scene.dimensions = 2;
   scene.gravity = {0.5, 0, -9.81};
-  scene.materials = {test::make_liquid("water", 1000, {50, 5, 0.1}),
-                     test::make_material("gum", 500), test::make_material("wood", 600)};
+  scene.materials = {make_liquid("water", 1000, {50, 5, 0.1}), make_material("gum", 500),
+                     make_material("wood", 600)};
   scene.materials[1].springs = LatticeSprings{{{2000, 2}}, {{1000, 2}}, {}};
   scene.default_interface = {1000, 2};
   scene.vat = Vat{{0, -1, 0}, {1, 1, 1}, true, SlideMotion{{1, 0, 0}, 0.02, 1}, {}};
@@ -47,14 +47,13 @@ Scene plane_scene(IntegratorId integrator) {
 
 TEST(PlaneModel, LiquidHasTheDensityOfAnEndlessLattice) {
   for (const Real support : {1.5, 2.0, 3.0, 4.0}) {
-    Scene scene = test::make_scene(IntegratorId::velocity_verlet, 1e-3);
+    Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
     scene.dimensions = 2;
-    scene.materials = {test::make_liquid("water", 1000, {1, 1, support})};
-    scene.bodies = {test::make_body("water", BodyKind::liquid, "water",
-                                    test::make_particles(test::make_lattice(8, 1, 8, 1), 1000),
-                                    0.5)};
+    scene.materials = {make_liquid("water", 1000, {1, 1, support})};
+    scene.bodies = {make_body("water", BodyKind::liquid, "water",
+                              make_particles(make_lattice(8, 1, 8, 1), 1000), 0.5)};
     scene.periodic = Periodicity{Vec3::Constant(-4), Vec3::Constant(4), {true, false, true}};
-    const test::ForceProbe probe(scene);
+    const ForceProbe probe(scene);
     Real expected = 0;
     for (int x = -4; x <= 4; ++x) {
       for (int z = -4; z <= 4; ++z) {
@@ -64,17 +63,6 @@ TEST(PlaneModel, LiquidHasTheDensityOfAnEndlessLattice) {
     }
     for (const Real density : probe.work().of<LiquidScratch>().density) {
       EXPECT_NEAR(density, 1000 * expected, 1e-10);
-    }
-  }
-}
-
-TEST(PlaneModel, ParticlesInOnePlacePartWithinIt) {
-  for (Index i = 0; i < 50; ++i) {
-    for (Index j = 0; j < i; ++j) {
-      const Vec3 n = coincident_direction(i, j, 2);
-      EXPECT_EQ(n.y(), 0);
-      EXPECT_NEAR(n.norm(), 1, 1e-15);
-      EXPECT_EQ(n, Vec3(-coincident_direction(j, i, 2)));
     }
   }
 }
@@ -92,13 +80,12 @@ TEST(PlaneModel, RigidBodiesAreOfDiscs) {
 }
 
 TEST(PlaneModel, DiscHasTheAngularMomentumOfOne) {
-  Scene scene = test::make_scene(IntegratorId::velocity_verlet, 1e-3);
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
   scene.dimensions = 2;
-  scene.materials = {test::make_material("solid")};
-  scene.bodies = {
-      test::make_body("disc", BodyKind::rigid, "solid", test::make_particles({{0, 0, 0}}, 2), 0.5)};
+  scene.materials = {make_material("solid")};
+  scene.bodies = {make_body("disc", BodyKind::rigid, "solid", make_particles({{0, 0, 0}}, 2), 0.5)};
   scene.bodies[0].angular_velocity = {0, 3, 0};
-  const Simulation simulation = test::make_simulation(scene);
+  const Simulation simulation = make_simulation(scene);
   EXPECT_NEAR(simulation.diagnostics().bodies[0].angular_momentum.y(), 0.5 * 2 * 0.25 * 3, 1e-14);
 }
 
@@ -107,12 +94,11 @@ class Plane : public testing::TestWithParam<IntegratorId> {};
 TEST_P(Plane, IsNeverLeft) {
   Scene scene = plane_scene(GetParam());
   if (GetParam() == IntegratorId::explicit_euler) scene.numerics.step = scene.numerics.tick = 1e-4;
-  scene.bodies.push_back(test::make_body("twins", BodyKind::liquid, "water",
-                                         test::make_particles({Vec3::Zero(), Vec3::Zero()}, 1),
-                                         0.025));
+  scene.bodies.push_back(make_body("twins", BodyKind::liquid, "water",
+                                   make_particles({Vec3::Zero(), Vec3::Zero()}, 1), 0.025));
   scene.bodies.back().position = {0.2, 0, 0.8};  // two coincident particles
-  EXPECT_EQ(test::ForceProbe(scene).model().walls, (std::vector<int>{0, 1, 4, 5}));
-  Simulation simulation = test::make_simulation(scene);
+  EXPECT_EQ(ForceProbe(scene).model().walls, (std::vector<int>{0, 1, 4, 5}));
+  Simulation simulation = make_simulation(scene);
   ASSERT_TRUE(simulation.grab_start(1, simulation.bodies()[1].id, 0, {0.5, 0.3, 0.5}));
   ASSERT_TRUE(simulation.apply_force(simulation.bodies()[2].id, {1, 0, 1}, 0.1));
   simulation.advance(400);
@@ -130,28 +116,27 @@ TEST_P(Plane, IsNeverLeft) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Integrators, Plane, testing::ValuesIn(test::kIntegrators),
-                         [](const auto& integrator) { return to_string(integrator.param); });
+INSTANTIATE_TEST_SUITE_P(Integrators, Plane, testing::ValuesIn(kIntegrators), NameOf());
 
 TEST(PlaneCommands, ThatWouldLeaveItAreRefused) {
-  Simulation simulation = test::make_simulation(plane_scene(IntegratorId::velocity_verlet));
+  Simulation simulation = make_simulation(plane_scene(IntegratorId::velocity_verlet));
   const std::uint64_t before = simulation.state_hash();
-  EXPECT_EQ(test::errors_of(simulation.set_gravity({0, 1, 0})), "off_plane /gravity");
-  EXPECT_EQ(test::errors_of(simulation.apply_force(simulation.bodies()[0].id, {0, 1, 0}, 1)),
+  EXPECT_EQ(errors_of(simulation.set_gravity({0, 1, 0})), "off_plane /gravity");
+  EXPECT_EQ(errors_of(simulation.apply_force(simulation.bodies()[0].id, {0, 1, 0}, 1)),
             "off_plane /force");
   BodyDescription body =
       sampled("new", BodyKind::rigid, "wood", SphereShape{{0, 0, 0}, 0.1}, {0.5, 0.1, 0.8});
-  EXPECT_EQ(test::errors_of(simulation.add_body(body)), "off_plane /body/position");
+  EXPECT_EQ(errors_of(simulation.add_body(body)), "off_plane /body/position");
   EXPECT_EQ(simulation.state_hash(), before);
   body.position.y() = 0;
-  EXPECT_EQ(test::errors_of(simulation.add_body(body)), "");
-  EXPECT_EQ(test::errors_of(simulation.set_gravity({1, 0, 0})), "");
+  EXPECT_EQ(errors_of(simulation.add_body(body)), "");
+  EXPECT_EQ(errors_of(simulation.set_gravity({1, 0, 0})), "");
 }
 
 /// A period of 0.5 m along x, and a ball of radius 0.1 m with particles of 0.025 m.
 Scene narrow_scene() {
-  Scene scene = test::make_scene(IntegratorId::velocity_verlet, 1e-3);
-  scene.materials = {test::make_material("wood"), test::make_liquid("oil", 900, {10, 1, 0.3})};
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3,
+                           {make_material("wood"), make_liquid("oil", 900, {10, 1, 0.3})});
   scene.periodic = Periodicity{{0, 0, 0}, {0.5, 0, 0}, {true, false, false}};
   scene.bodies = {
       sampled("ball", BodyKind::rigid, "wood", SphereShape{{0, 0, 0}, 0.1}, {0.5, 0, 0})};
@@ -159,26 +144,26 @@ Scene narrow_scene() {
 }
 
 TEST(PeriodCommands, ThatReachTooFarAreRefused) {
-  Simulation simulation = test::make_simulation(narrow_scene());
+  Simulation simulation = make_simulation(narrow_scene());
   const BodyDescription small =
       sampled("small", BodyKind::rigid, "wood", SphereShape{{0, 0, 0}, 0.1}, {0.5, 0, 1});
-  ASSERT_EQ(test::errors_of(simulation.add_body(small)), "");
+  ASSERT_EQ(errors_of(simulation.add_body(small)), "");
   BodyDescription large = small;
   large.name = "large";
   large.position.z() = 2;
   large.radius = 0.2;
   large.spacing = 0.1;
-  EXPECT_EQ(test::errors_of(simulation.add_body(large)), "");  // 0.2 + 0.025 m are below 0.25 m
+  EXPECT_EQ(errors_of(simulation.add_body(large)), "");  // 0.2 + 0.025 m are below 0.25 m
   large.name = "larger";
   large.radius = 0.23;
-  EXPECT_EQ(test::errors_of(simulation.add_body(large)), "out_of_range /body");
+  EXPECT_EQ(errors_of(simulation.add_body(large)), "out_of_range /body");
   BodyDescription oil =
       sampled("oil", BodyKind::liquid, "oil", SphereShape{{0, 0, 0}, 0.1}, {0.5, 0, 3});
-  EXPECT_EQ(test::errors_of(simulation.add_body(oil)), "out_of_range /body");
-  EXPECT_EQ(test::errors_of(simulation.set_interface({{"wood", "wood"}, {100, 1}, 0.26})),
+  EXPECT_EQ(errors_of(simulation.add_body(oil)), "out_of_range /body");
+  EXPECT_EQ(errors_of(simulation.set_interface({{"wood", "wood"}, {100, 1}, 0.26})),
             "out_of_range /interface");
-  EXPECT_EQ(test::errors_of(simulation.set_interface({{"wood", "wood"}, {100, 1}, 0.24})), "");
+  EXPECT_EQ(errors_of(simulation.set_interface({{"wood", "wood"}, {100, 1}, 0.24})), "");
 }
 
 }  // namespace
-}  // namespace vat::plane_test
+}  // namespace vat::test::plane_test

@@ -9,11 +9,11 @@
 #include "tests/support/scenes.h"
 
 /// Effects of fields, jitter and dimensions on the initial state of a body.
-namespace vat::start_test {
+namespace vat::test::start_test {
 namespace {
 
 Material water() {
-  return test::make_liquid("water", 1000, {50, 1, 0.2});
+  return make_liquid("water", 1000, {50, 1, 0.2});
 }
 
 BodyDescription block(BodyKind kind, Shape shape) {
@@ -74,9 +74,9 @@ TEST(Start, DisplacementMovesParticlesAndThenVelocitiesAreTaken) {
 }
 
 BodyDescription spring_bar() {
-  ParticleShape shape = test::make_particles({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, 1);
+  ParticleShape shape = make_particles({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, 1);
   shape.fixed = {2};
-  BodyDescription bar = test::make_body("bar", BodyKind::deformable, "water", shape, 0.1);
+  BodyDescription bar = make_body("bar", BodyKind::deformable, "water", shape, 0.1);
   bar.springs = {{0, 1, {10, 0}, {}}, {1, 2, {10, 0}, 0.5}};
   return bar;
 }
@@ -179,4 +179,4 @@ TEST(Start, OfTwoDimensionsALatticeHasSpringsInThePlane) {
 }
 
 }  // namespace
-}  // namespace vat::start_test
+}  // namespace vat::test::start_test

@@ -6,13 +6,11 @@
 #include <cmath>
 
 #include "core/numerics/step_limits.h"
-#include "core/validation/validate.h"
+#include "tests/core/validation/warned_scenes.h"
 #include "tests/support/scenes.h"
 
-namespace vat::volumes_test {
+namespace vat::test::volumes_test {
 namespace {
-
-using namespace test;
 
 /// A closed cubic vat of 0.4 m, filled with water.
 Scene make_full_vat() {
@@ -67,22 +65,15 @@ TEST(Volumes, FillAWorldThatIsClosed) {
   EXPECT_FALSE(is_full(scene));
 }
 
-std::vector<std::string> paths_of(const std::vector<Warning>& warnings) {
-  std::vector<std::string> paths;
-  for (const Warning& warning : warnings) paths.push_back(warning.code + ' ' + warning.path);
-  return paths;
-}
-
 TEST(Volumes, PerfectLatticesThatFillTheirWorldAreWarnedOf) {
-  using testing::Contains;
-  using testing::Not;
+  const auto is_warned_of = testing::HasSubstr("perfect_lattice /bodies/0/jitter");
   Scene scene = make_full_vat();
-  EXPECT_THAT(paths_of(find_warnings(scene)), Contains("perfect_lattice /bodies/0/jitter"));
+  EXPECT_THAT(warnings_of(scene), is_warned_of);
   scene.bodies[0].jitter = 0.1;
-  EXPECT_THAT(paths_of(find_warnings(scene)), Not(Contains("perfect_lattice /bodies/0/jitter")));
+  EXPECT_THAT(warnings_of(scene), testing::Not(is_warned_of));
   scene.bodies[0].jitter = 0;
   scene.vat->lid = false;
-  EXPECT_THAT(paths_of(find_warnings(scene)), Not(Contains("perfect_lattice /bodies/0/jitter")));
+  EXPECT_THAT(warnings_of(scene), testing::Not(is_warned_of));
 }
 
 // A solid with a quarter of the liquid's mass and the same volume has twice the frequency at the
@@ -116,4 +107,4 @@ TEST(StepLimits, OfCoupledLiquidsHaveNoContacts) {
 }
 
 }  // namespace
-}  // namespace vat::volumes_test
+}  // namespace vat::test::volumes_test

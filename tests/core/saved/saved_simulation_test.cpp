@@ -7,26 +7,19 @@
 
 // Snapshots that are saved while the state contains more than positions and velocities.
 
-namespace vat::saved_simulation_test {
+namespace vat::test::saved_simulation_test {
 namespace {
 
-using namespace test;
-
-TEST(SavedSimulation, ContinuesWithEveryIntegrator) {
-  for (const IntegratorId integrator : kIntegrators) {
-    SCOPED_TRACE(to_string(integrator));
-    Simulation simulation = make_simulation(make_shaken_vat(integrator));
-    expect_goes_on(simulation, 20);
-    simulation.advance(200);
-    expect_goes_on(simulation, 50);
-  }
-}
-
-TEST(SavedSimulation, ContinuesWithEveryStepControl) {
+TEST(SavedSimulation, ContinuesWithEveryIntegratorAndStepControl) {
+  std::vector<Scene> scenes;
+  for (const IntegratorId integrator : kIntegrators) scenes.push_back(make_shaken_vat(integrator));
   for (const StepControl control : {StepControl::adaptive, StepControl::local}) {
-    SCOPED_TRACE(to_string(control));
-    Scene scene = make_shaken_vat(IntegratorId::velocity_verlet, 2e-3);
-    scene.numerics.control = control;
+    scenes.push_back(make_shaken_vat(IntegratorId::velocity_verlet, 2e-3));
+    scenes.back().numerics.control = control;
+  }
+  for (const Scene& scene : scenes) {
+    SCOPED_TRACE(testing::Message() << to_string(scene.numerics.integrator) << ' '
+                                    << to_string(scene.numerics.control));
     Simulation simulation = make_simulation(scene);
     expect_goes_on(simulation, 20);
     simulation.advance(100);
@@ -35,8 +28,7 @@ TEST(SavedSimulation, ContinuesWithEveryStepControl) {
 }
 
 TEST(SavedSimulation, HasGrabsAndForcesOfUsers) {
-  Simulation simulation = make_simulation(make_shaken_vat(IntegratorId::velocity_verlet));
-  simulation.advance(30);
+  Simulation simulation = make_advanced(make_shaken_vat(IntegratorId::velocity_verlet), 30);
   const std::vector<BodyView> bodies = simulation.bodies();
   ASSERT_TRUE(simulation.grab_start(7, bodies[1].id, 5, {0.1, 0.1, 0.4}).ok());
   ASSERT_TRUE(simulation.grab_start(1ULL << 40, bodies[0].id, 0, {0, 0.1, 0.1}).ok());
@@ -53,8 +45,7 @@ BodyDescription make_newcomer(BodyKind kind, Real height) {
 }
 
 TEST(SavedSimulation, HoldsBodiesThatCameAndWent) {
-  Simulation simulation = make_simulation(make_shaken_vat(IntegratorId::velocity_verlet));
-  simulation.advance(20);
+  Simulation simulation = make_advanced(make_shaken_vat(IntegratorId::velocity_verlet), 20);
   ASSERT_TRUE(simulation.add_body(make_newcomer(BodyKind::deformable, 0.5)).ok());
   const BodyId second = simulation.add_body(make_newcomer(BodyKind::liquid, 0.7)).value();
   ASSERT_TRUE(simulation.remove_body(simulation.find_body("crate").value()).ok());
@@ -83,8 +74,8 @@ TEST(SavedSimulation, ContinuesAfterUndoneSteps) {
 }
 
 TEST(SavedSimulation, HasSleepingBodies) {
-  Simulation simulation = make_simulation(make_struck_stack());
-  simulation.advance(60);  // contacts, and checks of bodies that may fall asleep
+  Simulation simulation = make_advanced(make_struck_stack(),
+                                        60);  // contacts, and checks of bodies that may fall asleep
   expect_goes_on(simulation, 10);
   simulation.advance(100);
   ASSERT_EQ(simulation.sleeping_body_count(), 3U);
@@ -112,8 +103,7 @@ TEST(SavedSimulation, KeepsTheDampingOfAnEarlierGravity) {
   Scene scene = make_resting_pool(PressureSolver::incompressible);
   scene.sleeping.reset();
   scene.materials[1].liquid->viscosity = 400;
-  Simulation simulation = make_simulation(scene);
-  simulation.advance(9);
+  Simulation simulation = make_advanced(scene, 9);
   ASSERT_TRUE(simulation.set_gravity({0, 0, -900}).ok());
   expect_goes_on(simulation, 3);
 }
@@ -153,8 +143,7 @@ TEST(SavedSimulation, HoldsAMomentOfAFlowAndOfMelting) {
 }
 
 TEST(SavedSimulation, HoldsTheHashOfItsMoment) {
-  Simulation simulation = make_simulation(make_shaken_vat(IntegratorId::heun));
-  simulation.advance(10);
+  Simulation simulation = make_advanced(make_shaken_vat(IntegratorId::heun), 10);
   const Snapshot snapshot = simulation.snapshot();
   const std::uint64_t hash = simulation.state_hash();
   simulation.advance(10);
@@ -182,4 +171,4 @@ TEST(SavedSimulation, GoesBackToAStartMadeAnew) {
 }
 
 }  // namespace
-}  // namespace vat::saved_simulation_test
+}  // namespace vat::test::saved_simulation_test

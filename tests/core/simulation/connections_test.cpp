@@ -4,10 +4,8 @@
 
 #include "tests/support/shaken_vat.h"
 
-namespace vat::connections_test {
+namespace vat::test::connections_test {
 namespace {
-
-using namespace test;
 
 constexpr ConnectionQuery kAll{{}, 1'000'000};
 
@@ -16,8 +14,7 @@ BodyDescription particle(const char* name, BodyKind kind, const Vec3& position) 
 }
 
 Scene pair_scene(const InterfaceConstants& interface) {
-  Scene scene = make_scene(IntegratorId::symplectic_euler, 1e-3);
-  scene.materials = {make_material("stone")};
+  Scene scene = make_scene(IntegratorId::symplectic_euler, 1e-3, {make_material("stone")});
   scene.default_interface = interface;
   return scene;
 }
@@ -58,8 +55,7 @@ TEST(Connections, LeaveOutTornSprings) {
                                    make_particles({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}}, 1), 0.05);
   rope.springs = {{0, 1, {10, 0}, 0.5}, {1, 2, {10, 0}, 1.0}};
   scene.bodies = {rope};
-  Simulation simulation = make_simulation(scene);
-  simulation.advance(1);
+  Simulation simulation = make_advanced(scene, 1);
   const ConnectionList springs = simulation.connections(kAll).value().springs;
   ASSERT_EQ(springs.total, 1U);
   EXPECT_EQ(springs.sample[0].b.particle, 2U);
@@ -116,8 +112,7 @@ TEST(Connections, OfAStackCarryTheWeightAbove) {
 }
 
 TEST(Connections, AreThinnedToSoManyAtMost) {
-  Simulation simulation = make_simulation(make_shaken_vat(IntegratorId::velocity_verlet));
-  simulation.advance(200);
+  Simulation simulation = make_advanced(make_shaken_vat(IntegratorId::velocity_verlet), 200);
   const Connections all = simulation.connections(kAll).value();
   ASSERT_GT(all.springs.total, 50U);
   ASSERT_GT(all.contacts.total, 5U);
@@ -142,4 +137,4 @@ TEST(Connections, AreThinnedToSoManyAtMost) {
 }
 
 }  // namespace
-}  // namespace vat::connections_test
+}  // namespace vat::test::connections_test

@@ -3,14 +3,13 @@
 #include <memory>
 
 #include "core/stepping/step_engine.h"
+#include "tests/support/errors.h"
 #include "tests/support/shaken_vat.h"
 
 // How a simulation uses the engine of a device, with an engine in place of a device.
 
-namespace vat::engine_test {
+namespace vat::test::engine_test {
 namespace {
-
-using namespace test;
 
 /// An engine that records its calls. Its steps leave the particles where they are.
 struct Recorded {
@@ -58,8 +57,7 @@ Simulation make_with(Recorded& record) {
 }
 
 std::uint64_t hash_on_cpu(std::uint32_t steps) {
-  Simulation simulation = make_simulation(make_scene_of_test());
-  simulation.advance(steps);
+  Simulation simulation = make_advanced(make_scene_of_test(), steps);
   return simulation.state_hash();
 }
 
@@ -125,9 +123,8 @@ TEST(Engine, RepeatsUnreadStepsOnTheCpuIfTheDeviceIsLost) {
 TEST(Engine, IsRefusedWithTheErrorsOfTheScene) {
   Recorded record{.is_bindable = false};
   Simulation simulation = make_simulation(make_scene_of_test());
-  const Status set = simulation.set_engine(std::make_unique<FakeEngine>(record));
-  ASSERT_FALSE(set.ok());
-  EXPECT_EQ(set.errors().front().path, "/bodies/1/kind");
+  EXPECT_EQ(errors_of(simulation.set_engine(std::make_unique<FakeEngine>(record))),
+            "not_on_device /bodies/1/kind");
   EXPECT_EQ(simulation.advance(1).device_steps, 0U);
 }
 
@@ -143,4 +140,4 @@ TEST(Engine, IsNotUsedAfterACommandAddsAFeatureThatItLacks) {
 }
 
 }  // namespace
-}  // namespace vat::engine_test
+}  // namespace vat::test::engine_test

@@ -8,10 +8,8 @@
 #include "tests/support/edited_scene.h"
 #include "tests/support/saved_bits.h"
 
-namespace vat::moved_body_test {
+namespace vat::test::moved_body_test {
 namespace {
-
-using namespace test;
 
 /// Moves a body in two simulations with the same state, and recompiles one of them by setting a
 /// material that the body does not use. Expects the same bits from both.
@@ -67,8 +65,7 @@ TEST(MovedBody, LeavesLiquidsUnderThePresentGravity) {
   scene.pressure_solver = PressureSolver::incompressible;
   scene.numerics.integrator = IntegratorId::symplectic_euler;
   scene.numerics.control = StepControl::adaptive;
-  Simulation simulation = make_simulation(scene);
-  simulation.advance(5);
+  Simulation simulation = make_advanced(scene, 5);
   ASSERT_TRUE(simulation.set_gravity({1, 2, -30}).ok());
   expect_same_as_compiling_all(simulation);
 }
@@ -109,8 +106,7 @@ TEST(MovedBody, IsCompiledWithAllThatDeformableBodiesHave) {
 }
 
 TEST(MovedBody, ADeformableOneContinuesFromItsBytes) {
-  Simulation simulation = make_simulation(scene_of_cubes(StepControl::adaptive));
-  simulation.advance(5);
+  Simulation simulation = make_advanced(scene_of_cubes(StepControl::adaptive), 5);
   ASSERT_TRUE(simulation.move_body(simulation.bodies()[1].id, {{0.6, 0.7, 0.5}, {}, {}}).ok());
   expect_goes_on(simulation, 40);
 }
@@ -123,11 +119,10 @@ TEST(MovedBody, KeepsAndForgetsTheStateThatCompilingAllKeepsAndForgets) {
     scene.materials[1].plasticity = Plasticity{.yield_strain = 0.01};
     scene.default_interface.law = InterfaceLaw::projection;
     scene.sleeping = Sleeping{};
-    Simulation simulation = make_simulation(scene);
-    simulation.advance(250);  // all bodies have fallen
+    Simulation simulation = make_advanced(scene, 250);  // all bodies have fallen
     expect_same_as_compiling_all(simulation, {0, 0, 0.1});
   }
 }
 
 }  // namespace
-}  // namespace vat::moved_body_test
+}  // namespace vat::test::moved_body_test

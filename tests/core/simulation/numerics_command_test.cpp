@@ -9,10 +9,8 @@
 #include "tests/support/errors.h"
 #include "tests/support/saved_bits.h"
 
-namespace vat::numerics_command_test {
+namespace vat::test::numerics_command_test {
 namespace {
-
-using namespace test;
 
 /// A scene with 20 steps per tick.
 Scene ticked_scene() {
@@ -225,4 +223,4 @@ TEST(SetNumerics, WrongControlAndTolerancesAreNamed) {
 }
 
 }  // namespace
-}  // namespace vat::numerics_command_test
+}  // namespace vat::test::numerics_command_test

@@ -9,10 +9,8 @@
 
 // A command that runs out of memory at any allocation changes nothing.
 
-namespace vat::out_of_memory_test {
+namespace vat::test::out_of_memory_test {
 namespace {
-
-using namespace test;
 
 constexpr std::uint64_t kHand = 7;
 
@@ -148,4 +146,4 @@ TEST(OutOfMemory, AdvanceThatTheGuardWatchesDoesAllOrNothing) {
 }
 
 }  // namespace
-}  // namespace vat::out_of_memory_test
+}  // namespace vat::test::out_of_memory_test

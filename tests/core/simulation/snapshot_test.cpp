@@ -4,10 +4,8 @@
 
 #include "tests/support/shaken_vat.h"
 
-namespace vat::snapshot_test {
+namespace vat::test::snapshot_test {
 namespace {
-
-using namespace test;
 
 constexpr std::uint32_t kSteps = 25;
 
@@ -65,21 +63,6 @@ TEST(Snapshot, BringsBackARemovedBody) {
   EXPECT_EQ(hash_after(simulation, kSteps), later);
 }
 
-TEST(Snapshot, ForgetsABodyAddedSince) {
-  Simulation simulation = make_busy();
-  const Snapshot snapshot = simulation.snapshot();
-  const std::uint64_t later = hash_after(simulation, kSteps);
-  simulation.restore(snapshot);
-  const BodyId first = simulation.add_body(make_newcomer()).value();
-  const std::uint64_t with_newcomer = hash_after(simulation, kSteps);
-  simulation.restore(snapshot);
-  EXPECT_FALSE(simulation.find_body(first).has_value());
-  EXPECT_EQ(hash_after(simulation, kSteps), later);
-  simulation.restore(snapshot);
-  ASSERT_TRUE(simulation.add_body(make_newcomer()).ok());
-  EXPECT_EQ(hash_after(simulation, kSteps), with_newcomer);
-}
-
 // Users may still use the id of the first added body.
 TEST(Snapshot, RestoredGivesNoIdTwice) {
   Simulation simulation = make_busy();
@@ -94,38 +77,5 @@ TEST(Snapshot, RestoredGivesNoIdTwice) {
   }
 }
 
-TEST(Snapshot, TakenAfterCommandsHoldsThem) {
-  Simulation simulation = make_busy();
-  hash_after(simulation, kSteps);
-  ASSERT_TRUE(simulation.remove_body(simulation.find_body("crate").value()).ok());
-  ASSERT_TRUE(simulation.add_body(make_newcomer()).ok());
-  ASSERT_TRUE(simulation.set_gravity({1, 0, -5}).ok());
-  ASSERT_TRUE(simulation.set_interface({{"a", "b"}, {900, 0.2}, 0.07}).ok());
-  ASSERT_TRUE(simulation.grab_move(7, {0, 0, 0.5}).ok());
-  const Snapshot snapshot = simulation.snapshot();
-  const std::uint64_t later = hash_after(simulation, kSteps);
-  ASSERT_TRUE(simulation.set_gravity(Vec3::Zero()).ok());
-  ASSERT_TRUE(simulation.set_interface({{"a", "b"}, {10, 0}, {}}).ok());
-  ASSERT_TRUE(simulation.grab_end(7).ok());
-  simulation.restore(snapshot);
-  EXPECT_EQ(simulation.scene().gravity, Vec3(1, 0, -5));
-  EXPECT_EQ(hash_after(simulation, kSteps), later);
-}
-
-TEST(Snapshot, OutlivesTheChangesAndItsCopies) {
-  Simulation simulation = make_busy();
-  const std::uint64_t start = simulation.state_hash();
-  Snapshot kept = simulation.snapshot();
-  {
-    const Snapshot copy = kept;
-    hash_after(simulation, kSteps);
-    kept = simulation.snapshot();
-    simulation.restore(copy);
-  }
-  EXPECT_EQ(simulation.state_hash(), start);
-  simulation.restore(kept);
-  EXPECT_NE(simulation.state_hash(), start);
-}
-
 }  // namespace
-}  // namespace vat::snapshot_test
+}  // namespace vat::test::snapshot_test

@@ -8,10 +8,8 @@
 
 // The hash covers the complete start state of the next steps: equal hashes imply equal futures.
 
-namespace vat::state_hash_test {
+namespace vat::test::state_hash_test {
 namespace {
-
-using namespace test;
 
 constexpr std::uint32_t kSteps = 25;
 constexpr std::uint64_t kHand = 7;
@@ -111,4 +109,4 @@ TEST(StateHash, EqualHashesHaveEqualFutures) {
 }
 
 }  // namespace
-}  // namespace vat::state_hash_test
+}  // namespace vat::test::state_hash_test

@@ -9,10 +9,8 @@
 #include "tests/support/mixed_scenes.h"
 #include "tests/support/resting_scenes.h"
 
-namespace vat::views_test {
+namespace vat::test::views_test {
 namespace {
-
-using namespace test;
 
 /// Copies of the values of a view.
 struct Values {
@@ -61,16 +59,14 @@ TEST(Views, KeptViewsIncludeSleepers) {
   Scene scene = make_resting_scene();
   scene.bodies = {make_crate("crate", 0.0), make_marble("marble", {5, 5, 6})};
   const std::uint32_t asleep = 200;
-  Simulation simulation = make_simulation(scene);
-  simulation.advance(asleep);
+  Simulation simulation = make_advanced(scene, asleep);
   ASSERT_EQ(simulation.sleeping_body_count(), 1U);
   expect_kept(scene, asleep);
 }
 
 TEST(LiquidFields, OfAllBodiesAreThoseOfEachBody) {
   Simulation simulation =
-      make_simulation(make_wet_mixture(IntegratorId::velocity_verlet, PressureSolver::tait));
-  simulation.advance(5);
+      make_advanced(make_wet_mixture(IntegratorId::velocity_verlet, PressureSolver::tait), 5);
   const std::vector<BodyView> bodies = simulation.bodies();
   const std::vector<LiquidFields> fields = simulation.liquid_fields();
   ASSERT_EQ(fields.size(), bodies.size());
@@ -86,4 +82,4 @@ TEST(LiquidFields, OfAllBodiesAreThoseOfEachBody) {
 }
 
 }  // namespace
-}  // namespace vat::views_test
+}  // namespace vat::test::views_test

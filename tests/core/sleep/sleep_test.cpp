@@ -4,22 +4,11 @@
 
 // Conditions for sleep.
 
-namespace vat::sleep_test {
+namespace vat::test::sleep_test {
 namespace {
-
-using namespace test;
 
 /// Islands are searched in every eighth check. A tick has one check.
 constexpr int kTicksToSleep = 9;
-
-TEST(Sleep, NothingSleepsIfTheSceneDisablesIt) {
-  Scene scene = make_resting_scene();
-  scene.bodies = {make_crate("crate", 0.0)};
-  scene.sleeping.reset();
-  Simulation simulation = make_simulation(scene);
-  EXPECT_EQ(simulation.advance(480).steps, 480U);
-  EXPECT_FALSE(is_asleep(simulation, "crate"));
-}
 
 TEST(Sleep, ABodyAtRestSleepsAfterItsTime) {
   Scene scene = make_resting_scene();
@@ -59,22 +48,6 @@ TEST(Sleep, SleepersKeepTheirPlacesAndTakeNoSteps) {
   }
 }
 
-TEST(Sleep, LosesNoMoreThanTheEnergyOfItsSpeed) {
-  Scene scene = make_resting_scene();
-  scene.gravity.setZero();
-  scene.bodies = {make_crate("crate", {0, 0, 3})};
-  scene.bodies[0].velocity = {9e-4, 0, 0};
-  Simulation simulation = make_simulation(scene);
-  const Diagnostics before = simulation.diagnostics();
-  advance_to_sleep(simulation, "crate", 2);
-  ASSERT_TRUE(is_asleep(simulation, "crate"));
-  const Diagnostics after = simulation.diagnostics();
-  EXPECT_EQ(after.kinetic_energy, 0);
-  EXPECT_LE(before.kinetic_energy, before.bodies[0].mass * std::pow(scene.sleeping->speed, 2) / 2);
-  EXPECT_GT(before.kinetic_energy, 0);
-  EXPECT_EQ(simulation.bodies()[0].pose->velocity, Vec3(Vec3::Zero()));
-}
-
 TEST(Sleep, NotAboveTheSpeedLimits) {
   Scene scene = make_resting_scene();
   scene.gravity.setZero();
@@ -82,19 +55,9 @@ TEST(Sleep, NotAboveTheSpeedLimits) {
   scene.bodies[0].velocity = {0, 1.1e-3, 0};
   // The corners are 0.14 m from the axis.
   scene.bodies[1].angular_velocity = {0, 0, 1.1e-3 / 0.1414};
-  Simulation simulation = make_simulation(scene);
-  simulation.advance(960);
+  Simulation simulation = make_advanced(scene, 960);
   EXPECT_FALSE(is_asleep(simulation, "moves"));
   EXPECT_FALSE(is_asleep(simulation, "turns"));
-}
-
-// A body that turns back at the top of its flight is slow for a moment.
-TEST(Sleep, NotAtATurningPoint) {
-  Scene scene = make_resting_scene();
-  scene.bodies = {make_crate("crate", {0, 0, 3})};
-  Simulation simulation = make_simulation(scene);
-  simulation.advance(120);
-  EXPECT_LT(velocity_of(simulation, 0).z(), -9.81 * 0.4);
 }
 
 // A body that oscillates is slow in every fourth check, at its turning points.
@@ -114,19 +77,6 @@ TEST(Sleep, NotWhileSwinging) {
     ASSERT_FALSE(is_asleep(simulation, "marble"));
   }
   EXPECT_GE(slow, 13);
-}
-
-TEST(Sleep, AStackSleepsAsOne) {
-  Scene scene = make_resting_scene();
-  scene.bodies = {make_crate("low", 0.0), make_crate("high", {0, 0, kCrateRest + kCrateEdge}),
-                  make_crate("far", 5.0)};
-  scene.bodies[2].velocity = {2, 0, 0};
-  Simulation simulation = make_simulation(scene);
-  while (simulation.time() < 2) {
-    simulation.advance(1);
-    ASSERT_EQ(is_asleep(simulation, "low"), is_asleep(simulation, "high"));
-  }
-  EXPECT_TRUE(is_asleep(simulation, "low"));
 }
 
 /// A body at rest that touches a body which a user moves back and forth.
@@ -176,8 +126,7 @@ TEST(Sleep, AnObstacleJoinsNothing) {
   scene.bodies[2].material = "rubber";
   scene.interfaces = {{{"wood", "rubber"}, scene.default_interface, {}}};
   scene.interfaces[0].constants.restitution = 1;  // it bounces forever
-  Simulation simulation = make_simulation(scene);
-  simulation.advance(480);
+  Simulation simulation = make_advanced(scene, 480);
   EXPECT_TRUE(is_asleep(simulation, "left"));
   EXPECT_FALSE(is_asleep(simulation, "right"));
   EXPECT_FALSE(is_asleep(simulation, "ledge"));
@@ -208,8 +157,7 @@ TEST(Sleep, NotBeforeMelting) {
   ice.melting = Melting{"water", 2};
   scene.gravity.setZero();
   scene.bodies = {ice, make_crate("crate", {5, 0, 3})};
-  Simulation simulation = make_simulation(scene);
-  simulation.advance(470);
+  Simulation simulation = make_advanced(scene, 470);
   EXPECT_FALSE(is_asleep(simulation, "ice"));
   EXPECT_TRUE(is_asleep(simulation, "crate"));
   EXPECT_TRUE(simulation.advance(20).bodies_changed);
@@ -240,37 +188,16 @@ TEST(Sleep, NothingInAVatThatMovesOrWhileLiquidsSettleOrFlowIn) {
                      .until = 6,
                      .most_particles = 100}};
   for (const Scene& driven : {slides, belt, settles, flows}) {
-    Simulation simulation = make_simulation(driven);
-    simulation.advance(350);
+    Simulation simulation = make_advanced(driven, 350);
     EXPECT_FALSE(is_asleep(simulation, "crate"));
   }
-  Simulation simulation = make_simulation(settles);
-  simulation.advance(480);
+  Simulation simulation = make_advanced(settles, 480);
   EXPECT_TRUE(is_asleep(simulation, "crate"));
   flows.emitters[0].open = false;
-  Simulation closed = make_simulation(flows);
-  closed.advance(350);
+  Simulation closed = make_advanced(flows, 350);
   EXPECT_TRUE(is_asleep(closed, "crate"));
   ASSERT_TRUE(closed.set_emitter("tap", true).ok());
   EXPECT_FALSE(is_asleep(closed, "crate"));
-}
-
-TEST(Sleep, ALookChangesNothing) {
-  Scene scene = make_resting_scene();
-  scene.bodies = {make_crate("crate", {0, 0, 1}), make_marble("marble", {0.02, 0.01, 3})};
-  scene.bodies[0].angular_velocity = {1, 2, 0.5};
-  Scene without = scene;
-  without.sleeping.reset();
-  Simulation a = make_simulation(scene);
-  Simulation b = make_simulation(without);
-  for (int n = 0; n < 40; ++n) {
-    a.advance(4);
-    b.advance(4);
-    for (std::size_t body = 0; body < 2; ++body) {
-      ASSERT_EQ(position_of(a, body), position_of(b, body)) << n;
-      ASSERT_EQ(velocity_of(a, body), velocity_of(b, body)) << n;
-    }
-  }
 }
 
 TEST(Sleep, DistantBodiesAreNotAffectedBySleepers) {
@@ -300,4 +227,4 @@ TEST(Sleep, DistantBodiesAreNotAffectedBySleepers) {
 }
 
 }  // namespace
-}  // namespace vat::sleep_test
+}  // namespace vat::test::sleep_test

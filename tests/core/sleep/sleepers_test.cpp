@@ -3,24 +3,15 @@
 #include <gtest/gtest.h>
 
 #include "core/laws/vat_motion.h"
-#include "core/model/compile.h"
 #include "core/sleep/resting_bodies.h"
 #include "core/state/body_state.h"
-#include "core/stepping/step_plan.h"
+#include "tests/support/force_probe.h"
 #include "tests/support/resting_scenes.h"
 
 // The columns of a subset of a model's bodies.
 
-namespace vat::sleepers_test {
+namespace vat::test::sleepers_test {
 namespace {
-
-using namespace test;
-
-std::shared_ptr<const Model> compile_scene(const Scene& scene) {
-  std::vector<BodyId> ids;
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) ids.push_back(static_cast<BodyId>(b + 1));
-  return compile(scene, ids, std::vector<std::shared_ptr<const SampledBody>>(ids.size()));
-}
 
 BodyDescription make_cubes(const char* name, BodyKind kind, const char* material, Real x) {
   BodyDescription body = make_crate(name, x);
@@ -194,4 +185,4 @@ TEST(Sleepers, LiquidsKeepTheirConstants) {
 }
 
 }  // namespace
-}  // namespace vat::sleepers_test
+}  // namespace vat::test::sleepers_test

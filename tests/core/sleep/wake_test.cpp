@@ -7,10 +7,8 @@
 
 // Events that wake sleeping bodies.
 
-namespace vat::wake_test {
+namespace vat::test::wake_test {
 namespace {
-
-using namespace test;
 
 /// Returns a simulation with sleeping bodies. A marble, if there is one, falls on the first of
 /// them.
@@ -206,8 +204,7 @@ TEST(Wake, ACommandBeginsTheTimeOfRestAnew) {
   const Scene scene = make_two_crates();
   Simulation simulation = make_simulation(scene);
   advance_to_sleep(simulation, "one", 2);
-  Simulation disturbed = make_simulation(scene);
-  disturbed.advance(40);
+  Simulation disturbed = make_advanced(scene, 40);
   ASSERT_TRUE(disturbed.set_gravity({0, 0, -9.8}).ok());
   const Real since = disturbed.time();
   advance_to_sleep(disturbed, "one", 2);
@@ -247,4 +244,4 @@ TEST(Wake, NotByCommandsThatFail) {
 }
 
 }  // namespace
-}  // namespace vat::wake_test
+}  // namespace vat::test::wake_test

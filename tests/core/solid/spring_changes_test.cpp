@@ -9,7 +9,7 @@
 #include "tests/support/same_bits.h"
 #include "tests/support/scenes.h"
 
-namespace vat::spring_changes_test {
+namespace vat::test::spring_changes_test {
 namespace {
 
 constexpr Real kLength = 2;  // [m] initial length
@@ -24,13 +24,14 @@ TEST(Plasticity, IsElasticUpToTheYieldStrain) {
 
 TEST(Plasticity, FlowsUntilTheStressIsAtYield) {
   for (const Real hardening : {0.0, 0.25, 4.0}) {
-    for (const Real strain : {0.15, -0.3}) {
+    Real rest = kLength;
+    for (const Real strain : {0.15, -0.3, 0.45}) {
       const Plasticity plasticity{0.1, hardening, 0, 0.5};
       const Real length = kLength * (1 + strain);
-      const Real rest = flown_length(plasticity, kLength, kLength, length, 1e-3);
+      rest = flown_length(plasticity, kLength, rest, length, 1e-3);
       const Real flown = rest / kLength - 1;
-      EXPECT_NEAR(strain - flown - hardening * flown, std::copysign(0.1, strain), 1e-15);
-      EXPECT_NEAR(flown_length(plasticity, kLength, rest, length, 1e-3), rest, 1e-15);
+      EXPECT_NEAR(strain - flown - hardening * flown, std::copysign(0.1, strain), 3e-15);
+      EXPECT_NEAR(flown_length(plasticity, kLength, rest, length, 1e-3), rest, 3e-15);
     }
   }
 }
@@ -51,38 +52,10 @@ TEST(Plasticity, EndsAtTheGreatestStrain) {
   EXPECT_EQ(flown_length(plasticity, 0, 0, 5, 1e-3), 0);  // no length, no strain
 }
 
-// The area of the stress-strain loop: flow of 4 (A - Y) / (1 + H) against Y, in units of k l0^2.
-TEST(Plasticity, TakesTheEnergyOfItsLoopInACycle) {
-  constexpr Real kYield = 0.05;
-  constexpr Real kAmplitude = 0.2;
-  constexpr int kSteps = 20000;
-  for (const Real hardening : {0.0, 0.5}) {
-    const Plasticity plasticity{kYield, hardening, 0, 0.5};
-    Real rest = kLength;
-    Real work = 0;
-    Real last = kLength;
-    for (int n = 1; n <= 2 * kSteps; ++n) {
-      const Real phase = 2 * std::numbers::pi * n / kSteps;
-      const Real length = kLength * (1 + kAmplitude * std::sin(phase));
-      const Real force = last - rest;
-      rest = flown_length(plasticity, kLength, rest, length, 1e-3);
-      if (n > kSteps) work += (force + length - rest) / 2 * (length - last);
-      last = length;
-    }
-    const Real expected = 4 * kYield * (kAmplitude - kYield) / (1 + hardening) * kLength * kLength;
-    EXPECT_NEAR(work / expected, 1, 1e-3) << hardening;
-  }
-}
-
 /// A mass on a spring along x. The other end is fixed.
 Scene make_oscillator(IntegratorId integrator, Real step) {
-  Scene scene = test::make_scene(integrator, step);
-  scene.materials = {test::make_material("clay")};
-  ParticleShape shape = test::make_particles({{0, 0, 0}, {1, 0, 0}}, 1);
-  shape.fixed = {0};
-  shape.velocities = {{0, 0, 0}, {3, 0, 0}};
-  scene.bodies = {test::make_body("oscillator", BodyKind::deformable, "clay", shape, 0.02)};
-  scene.bodies[0].springs = {{0, 1, {100, 0}, {}}};
+  Scene scene = test::make_oscillator(integrator, step, {100, 0}, 1);
+  std::get<ParticleShape>(scene.bodies[0].shape).velocities = {{0, 0, 0}, {3, 0, 0}};
   return scene;
 }
 
@@ -92,7 +65,7 @@ TEST(Plasticity, LeavesTheSetOfItsEnergy) {
   constexpr Real kYield = 0.1;
   const Real set = (4.5 - 100 * kYield * kYield / 2) / (100 * kYield);
   for (const bool implicit : {false, true}) {
-    for (const IntegratorId integrator : test::kIntegrators) {
+    for (const IntegratorId integrator : kIntegrators) {
       if (implicit && integrator != IntegratorId::velocity_verlet) continue;
       for (const StepControl control :
            {StepControl::fixed, StepControl::adaptive, StepControl::local}) {
@@ -102,12 +75,12 @@ TEST(Plasticity, LeavesTheSetOfItsEnergy) {
         scene.numerics.control = control;
         scene.materials[0].plasticity = Plasticity{kYield, 0, 0, 0.9};
         scene.materials[0].implicit_springs = implicit;
-        Simulation simulation = test::make_simulation(scene);
+        Simulation simulation = make_simulation(scene);
         Real greatest = 0;
         Real least = 10;
         for (int n = 0; n < 10000; ++n) {
           simulation.advance(1);
-          const Real x = test::position_of(simulation, 0, 1).x() - 1;
+          const Real x = position_of(simulation, 0, 1).x() - 1;
           greatest = std::max(greatest, x);
           if (simulation.time() > 0.5) least = std::min(least, x);
         }
@@ -128,15 +101,15 @@ TEST(Tearing, IsPermanent) {
     Scene scene = make_oscillator(IntegratorId::velocity_verlet, 1e-3);
     scene.materials[0].tearing_strain = 0.2;  // the oscillation would reach 0.3
     scene.materials[0].implicit_springs = implicit;
-    Simulation simulation = test::make_simulation(scene);
+    Simulation simulation = make_simulation(scene);
     EXPECT_EQ(simulation.diagnostics().torn_springs, 0U);
     simulation.advance(200);
     EXPECT_EQ(simulation.diagnostics().torn_springs, 1U);
     EXPECT_EQ(simulation.diagnostics().elastic_energy, 0);
-    const Vec3 velocity = test::velocity_of(simulation, 0, 1);
+    const Vec3 velocity = velocity_of(simulation, 0, 1);
     EXPECT_NEAR(velocity.x(), std::sqrt(9 - 100 * 0.04), 0.03);  // change within a step of 1 ms
     simulation.advance(100);
-    EXPECT_EQ(test::velocity_of(simulation, 0, 1), velocity);
+    EXPECT_EQ(velocity_of(simulation, 0, 1), velocity);
   }
 }
 
@@ -146,27 +119,26 @@ TEST(Tearing, EndsTheDashpotToo) {
   scene.bodies[0].springs[0] = {0, 1, {100, 1e4}, 0.9};  // the damper needs an implicit solve
   scene.materials[0].tearing_strain = 0.05;
   scene.gravity = {10, 0, 0};
-  Simulation simulation = test::make_simulation(scene);
-  simulation.advance(1);
+  Simulation simulation = make_advanced(scene, 1);
   ASSERT_EQ(simulation.diagnostics().torn_springs, 1U);
-  const Vec3 velocity = test::velocity_of(simulation, 0, 1);
+  const Vec3 velocity = velocity_of(simulation, 0, 1);
   simulation.advance(10);
-  EXPECT_NEAR(test::velocity_of(simulation, 0, 1).x() - velocity.x(), 1, 1e-12);
+  EXPECT_NEAR(velocity_of(simulation, 0, 1).x() - velocity.x(), 1, 1e-12);
 }
 
 /// A block that is torn in two and dented. Its right half separates.
 Scene make_torn_block(StepControl control) {
-  Scene scene = test::make_scene(IntegratorId::velocity_verlet, 1e-3);
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
   scene.numerics.control = control;
-  scene.materials = {test::make_material("clay")};
+  scene.materials = {make_material("clay")};
   scene.materials[0].plasticity = Plasticity{0.02, 0.1, 0.01, 0.3};
   scene.materials[0].tearing_strain = 0.2;
-  ParticleShape shape = test::make_particles(test::make_lattice(16, 6, 6, 0.05), 0.05);
+  ParticleShape shape = make_particles(make_lattice(16, 6, 6, 0.05), 0.05);
   for (const Vec3& place : shape.positions) {
     shape.velocities.push_back({place.x() > 0 ? 6.0 : 0.0, place.z() * 20, 0});
   }
-  scene.bodies = {test::make_body("block", BodyKind::deformable, "clay", shape, 0.02)};
-  scene.bodies[0].springs = test::join_near(shape.positions, 0.075, {2000, 1});
+  scene.bodies = {make_body("block", BodyKind::deformable, "clay", shape, 0.02)};
+  scene.bodies[0].springs = join_near(shape.positions, 0.075, {2000, 1});
   return scene;
 }
 
@@ -174,8 +146,8 @@ TEST(SpringChanges, HaveTheSameBitsForAnyThreads) {
   for (const StepControl control :
        {StepControl::fixed, StepControl::adaptive, StepControl::local}) {
     const Scene scene = make_torn_block(control);
-    test::expect_same_bits(scene, 30, 10);
-    Simulation simulation = test::make_simulation(scene);
+    expect_same_bits(scene, 30, 10);
+    Simulation simulation = make_simulation(scene);
     const Diagnostics start = simulation.diagnostics();
     simulation.advance(100);
     const Diagnostics end = simulation.diagnostics();
@@ -191,20 +163,19 @@ TEST(SpringChanges, HaveTheSameBitsForAnyThreads) {
 TEST(SpringChanges, ArePartOfTheHash) {
   Scene scene = make_oscillator(IntegratorId::runge_kutta_4, 1e-3);
   scene.materials[0].plasticity = Plasticity{0.01, 0, 0, 0.5};
-  Simulation one = test::make_simulation(scene);
+  Simulation one = make_simulation(scene);
   scene.materials[0].plasticity->yield_strain = 0.02;
-  Simulation other = test::make_simulation(scene);
+  Simulation other = make_simulation(scene);
   EXPECT_EQ(one.state_hash(), other.state_hash());
   one.advance(4);  // up to a strain of 0.012; forces were elastic until then
   other.advance(4);
-  EXPECT_EQ(test::position_of(one, 0, 1), test::position_of(other, 0, 1));
+  EXPECT_EQ(position_of(one, 0, 1), position_of(other, 0, 1));
   EXPECT_NE(one.state_hash(), other.state_hash());
 }
 
 TEST(SpringChanges, AreKeptAtChangesOfBodies) {
   Scene scene = make_torn_block(StepControl::fixed);
-  Simulation simulation = test::make_simulation(scene);
-  simulation.advance(50);
+  Simulation simulation = make_advanced(scene, 50);
   const Diagnostics before = simulation.diagnostics();
   BodyDescription other = scene.bodies[0];
   other.name = "other";
@@ -222,9 +193,9 @@ TEST(SpringChanges, AreUndoneWithTheStep) {
   scene.numerics.step = scene.numerics.tick = 0.02;  // much too long
   scene.materials[0].plasticity->relaxation_time = 0;
   scene.bodies[0].springs =
-      test::join_near(std::get<ParticleShape>(scene.bodies[0].shape).positions, 0.075, {1e9, 0});
+      join_near(std::get<ParticleShape>(scene.bodies[0].shape).positions, 0.075, {1e9, 0});
   scene.materials[0].tearing_strain = 900;
-  Simulation simulation = test::make_simulation(scene);
+  Simulation simulation = make_simulation(scene);
   AdvanceReport report;
   for (int n = 0; n < 20 && !report.failed; ++n) {
     const std::uint64_t before = simulation.state_hash();
@@ -237,4 +208,4 @@ TEST(SpringChanges, AreUndoneWithTheStep) {
 }
 
 }  // namespace
-}  // namespace vat::spring_changes_test
+}  // namespace vat::test::spring_changes_test

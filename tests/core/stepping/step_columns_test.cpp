@@ -11,14 +11,10 @@
 #include <memory>
 
 #include "core/limits.h"
-#include "core/model/compile.h"
-#include "core/state/controls.h"
-#include "core/stepping/step_plan.h"
-#include "core/stepping/workspace.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
-namespace vat::step_columns_test {
+namespace vat::test::step_columns_test {
 namespace {
 
 constexpr Real kNan = std::numeric_limits<Real>::quiet_NaN();
@@ -189,9 +185,7 @@ void run(const Stage& stage, const Model& model, Columns& columns) {
 
 /// Runs the plan, and each of its stages a second time with overwritten columns.
 void expect_declared(const Scene& scene) {
-  const std::vector<BodyId> ids(scene.bodies.size(), 1);
-  const auto model =
-      compile(scene, ids, std::vector<std::shared_ptr<const SampledBody>>(ids.size()));
+  const auto model = compile_scene(scene);
   Columns columns{initial_state(*model), {}};
   for (const Stage& stage : model->plan.stages) {
     Columns spoilt = columns;
@@ -213,15 +207,14 @@ void expect_declared(const Scene& scene) {
 
 /// Bodies of each kind that touch one another and the walls, so every stage has work.
 Scene crowded_scene() {
-  Scene scene = test::make_scene(IntegratorId::velocity_verlet, 1e-3);
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
   scene.gravity = {0, 0, -9.81};
-  scene.materials = {test::make_liquid("water", 1000, {100, 1, 0.1}),
-                     test::make_liquid("oil", 900, {100, 1, 0.1}), test::make_material("solid")};
+  scene.materials = {make_liquid("water", 1000, {100, 1, 0.1}),
+                     make_liquid("oil", 900, {100, 1, 0.1}), make_material("solid")};
   scene.vat = Vat{Vec3::Constant(-0.15), Vec3::Constant(0.4), true, {}};
-  const std::vector<Vec3> points = test::make_lattice(3, 3, 3, 0.05);
+  const std::vector<Vec3> points = make_lattice(3, 3, 3, 0.05);
   const auto add = [&](const char* name, BodyKind kind, const char* material, Real x) {
-    BodyDescription body =
-        test::make_body(name, kind, material, test::make_particles(points, 0.3), 0.05);
+    BodyDescription body = make_body(name, kind, material, make_particles(points, 0.3), 0.05);
     body.position = {x, 0.01 * x, -0.05};
     body.velocity = {-1, x, 1};
     scene.bodies.push_back(body);
@@ -230,7 +223,7 @@ Scene crowded_scene() {
   add("film", BodyKind::liquid, "oil", 0.06);
   add("cloth", BodyKind::deformable, "solid", 0.17);
   add("ball", BodyKind::rigid, "solid", 0.28);
-  scene.bodies[2].springs = test::join_near(points, 0.08, {100, 1});
+  scene.bodies[2].springs = join_near(points, 0.08, {100, 1});
   for (SpringDescription& spring : scene.bodies[2].springs) spring.rest_length = 0.04;
   return scene;
 }
@@ -239,6 +232,10 @@ struct Case {
   const char* name;
   std::function<void(Scene&)> change;
 };
+
+void set_belt(Scene& scene) {
+  scene.vat->walls[4] = Wall{true, {0.5, 0, 0}};
+}
 
 void set_surface_tension(Scene& scene) {
   for (Material& material : scene.materials) {
@@ -250,13 +247,10 @@ const Case kCases[] = {
     {"gas", [](Scene&) {}},
     {"no_viscosity",
      [](Scene& s) { s.materials[0].liquid->viscosity = s.materials[1].liquid->viscosity = 0; }},
-    {"no_slip",
-     [](Scene& s) {
-       s.vat->walls[4] = Wall{true, {0.5, 0, 0}};
-     }},
+    {"no_slip", set_belt},
     {"no_slip_without_pressure",
      [](Scene& s) {
-       s.vat->walls[4] = Wall{true, {0.5, 0, 0}};
+       set_belt(s);
        s.forces.pressure = false;
      }},
     {"no_pressure", [](Scene& s) { s.forces.pressure = false; }},
@@ -272,13 +266,13 @@ const Case kCases[] = {
     {"tait_no_slip",
      [](Scene& s) {
        s.pressure_solver = PressureSolver::tait;
-       s.vat->walls[4] = Wall{true, {0.5, 0, 0}};
+       set_belt(s);
      }},
     {"filled",
      [](Scene& s) {
        s.pressure_solver = PressureSolver::tait;
        s.vat->max = {0.35, 0.15, 0.15};
-       ASSERT_TRUE(test::ForceProbe(s).model().is_filled);
+       ASSERT_TRUE(ForceProbe(s).model().is_filled);
      }},
     {"kept_volume",
      [](Scene& s) {
@@ -314,11 +308,10 @@ TEST(StepColumns, OfACollapsedLiquidAreCutOffAndFailTheStep) {
   const auto count = static_cast<int>(1.5 * std::sqrt(max_pairs(1)));
   std::vector<Vec3> points;
   for (int i = 0; i < count; ++i) points.emplace_back(1e-6 * i, 0, 0);
-  Scene scene = test::make_scene(IntegratorId::velocity_verlet, 1e-3);
-  scene.materials = {test::make_liquid("water", 1000, {100, 0, 0.1})};
-  scene.bodies = {
-      test::make_body("drop", BodyKind::liquid, "water", test::make_particles(points, 0.1), 0.05)};
-  const auto model = compile(scene, {1}, {nullptr});
+  Scene scene =
+      make_scene(IntegratorId::velocity_verlet, 1e-3, {make_liquid("water", 1000, {100, 0, 0.1})});
+  scene.bodies = {make_body("drop", BodyKind::liquid, "water", make_particles(points, 0.1), 0.05)};
+  const auto model = compile_scene(scene);
   Columns columns{initial_state(*model), {}};
   for (const Stage& stage : model->plan.stages) run(stage, *model, columns);
   EXPECT_TRUE(columns.work.of<LiquidScratch>().too_many_pairs);
@@ -330,4 +323,4 @@ TEST(StepColumns, OfACollapsedLiquidAreCutOffAndFailTheStep) {
 }
 
 }  // namespace
-}  // namespace vat::step_columns_test
+}  // namespace vat::test::step_columns_test

@@ -9,10 +9,8 @@
 #include "core/numerics/error_model.h"
 #include "tests/support/scenes.h"
 
-namespace vat::step_control_test {
+namespace vat::test::step_control_test {
 namespace {
-
-using namespace test;
 
 TEST(StepLevel, IsTheLeastThatIsShortEnough) {
   EXPECT_EQ(level_of(1, 1), 0U);
@@ -62,15 +60,9 @@ TEST(ErrorModel, StepsOfItsPhaseMakeItsError) {
   for (const IntegratorId integrator : kIntegrators) {
     for (const Real error : {1e-2, 1e-3, 1e-4}) {
       const Real z = resolving_phase(integrator, error);
-      Scene scene = make_scene(integrator, 1e-2);
-      scene.materials = {make_material("m")};
       const Real omega = z / 1e-2;
-      BodyDescription body = make_body("oscillator", BodyKind::deformable, "m",
-                                       make_particles({{0, 0, 0}, {1.1, 0, 0}}, 1), 0.01);
-      body.springs = {{0, 1, {omega * omega, 0}, 1.0}};
-      std::get<ParticleShape>(body.shape).fixed = {0};
-      scene.bodies = {body};
-      Simulation simulation = make_simulation(scene);
+      Simulation simulation =
+          make_simulation(make_oscillator(integrator, 1e-2, {omega * omega, 0}, 1.1));
       const int steps = static_cast<int>(std::lround(2 / z));
       simulation.advance(static_cast<std::uint32_t>(steps));
       const Real angle = steps * z;
@@ -86,4 +78,4 @@ TEST(ErrorModel, StepsOfItsPhaseMakeItsError) {
 }
 
 }  // namespace
-}  // namespace vat::step_control_test
+}  // namespace vat::test::step_control_test

@@ -7,20 +7,17 @@
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 
-namespace vat::step_plan_test {
+namespace vat::test::step_plan_test {
 namespace {
 
-using test::make_body;
-using test::make_particles;
-using test::make_scene;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
 Scene scene_of(const std::vector<BodyDescription>& bodies, Real viscosity = 0) {
-  Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
-  scene.materials = {test::make_liquid("water", 1000, {100, viscosity, 0.1}),
-                     test::make_liquid("oil", 800, {100, viscosity, 0.1}),
-                     test::make_material("solid")};
+  Scene scene =
+      make_scene(IntegratorId::velocity_verlet, 1e-3,
+                 {make_liquid("water", 1000, {100, viscosity, 0.1}),
+                  make_liquid("oil", 800, {100, viscosity, 0.1}), make_material("solid")});
   scene.bodies = bodies;
   return scene;
 }
@@ -32,7 +29,7 @@ BodyDescription body_of(const char* name, BodyKind kind, const char* material) {
 
 /// Returns the names of the plan's stages in order.
 std::string stages_of(const Scene& scene) {
-  const test::ForceProbe probe(scene);
+  const ForceProbe probe(scene);
   std::string names;
   for (const Stage& stage : probe.model().plan.stages) {
     names += (names.empty() ? "" : " ") + std::string(stage.name);
@@ -100,14 +97,14 @@ TEST(StepPlan, HasTheStagesOfWallsAndLaws) {
 }
 
 TEST(StepPlan, AsTextNamesStagesAndColumns) {
-  const test::ForceProbe probe(scene_of({make_spring_body()}));
+  const ForceProbe probe(scene_of({make_spring_body()}));
   EXPECT_EQ(to_text(probe.model().plan),
             "external_forces\n  reads  position velocity\n  writes force\n"
             "springs\n  reads  position velocity force\n  writes force\n");
 }
 
 TEST(StepPlan, OfASimulationFollowsItsBodies) {
-  Simulation simulation = test::make_simulation(scene_of({kPool}));
+  Simulation simulation = make_simulation(scene_of({kPool}));
   EXPECT_EQ(simulation.plan_text().find("contacts"), std::string::npos);
   const Result<BodyId> ball = simulation.add_body(kBall);
   ASSERT_TRUE(ball);
@@ -125,7 +122,7 @@ struct RecordingObserver : StageObserver {
 TEST(StepPlan, ReportsEachStageToTheObserver) {
   Scene scene = scene_of({make_spring_body()});
   scene.numerics.integrator = IntegratorId::symplectic_euler;
-  Simulation simulation = test::make_simulation(scene);
+  Simulation simulation = make_simulation(scene);
   RecordingObserver observer;
   simulation.set_observer(&observer);
   simulation.advance(2);
@@ -143,7 +140,7 @@ TEST(StepPlan, ReportsStagesUnderLocalControl) {
   Scene scene = scene_of({make_spring_body()});
   scene.numerics.integrator = IntegratorId::velocity_verlet;
   scene.numerics.control = StepControl::local;
-  Simulation simulation = test::make_simulation(scene);
+  Simulation simulation = make_simulation(scene);
   RecordingObserver observer;
   simulation.set_observer(&observer);
   simulation.advance(1);
@@ -165,8 +162,7 @@ TEST(StepPlanDeathTest, AColumnIsReadOnlyOnceWritten) {
 }
 
 TEST(StepPlan, ListsSubStepsOfLocalSteps) {
-  Scene scene = make_scene(IntegratorId::velocity_verlet, 0.01);
-  scene.materials = {test::make_material("m")};
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 0.01, {make_material("m")});
   const std::vector<Vec3> points = {{0, 0, 0}, {1, 0, 0}};
   scene.bodies = {make_body("soft", BodyKind::deformable, "m", make_particles(points, 1), 0.01),
                   make_body("stiff", BodyKind::deformable, "m", make_particles(points, 1), 0.01),
@@ -175,14 +171,13 @@ TEST(StepPlan, ListsSubStepsOfLocalSteps) {
   scene.bodies[0].springs = {{0, 1, {100, 0}, 1.0}};
   scene.bodies[1].springs = {{0, 1, {2e6, 0}, 1.0}};
   scene.bodies[2].sub_steps = 5;
-  EXPECT_THAT(test::make_simulation(scene).plan_text(),
-              testing::Not(testing::HasSubstr("sub-steps")));
+  EXPECT_THAT(make_simulation(scene).plan_text(), testing::Not(testing::HasSubstr("sub-steps")));
   scene.numerics.control = StepControl::local;
-  const std::string plan = test::make_simulation(scene).plan_text();
+  const std::string plan = make_simulation(scene).plan_text();
   EXPECT_THAT(plan, testing::HasSubstr("sub-steps of soft: 1\n"));
   EXPECT_THAT(plan, testing::ContainsRegex("sub-steps of stiff: (16|32)\n"));
   EXPECT_THAT(plan, testing::HasSubstr("sub-steps of ball: 8\n"));
 }
 
 }  // namespace
-}  // namespace vat::step_plan_test
+}  // namespace vat::test::step_plan_test

@@ -8,7 +8,7 @@
 #include "core/simulation/simulation.h"
 #include "tests/support/shaken_vat.h"
 
-namespace vat::instruction_set_test {
+namespace vat::test::instruction_set_test {
 namespace {
 
 using testing::AllOf;
@@ -52,7 +52,7 @@ TEST(InstructionSet, AMachineWithoutAnyHasTheBaseline) {
 }
 
 TEST(InstructionSet, ASimulationIsRefusedOneThatTheMachineLacks) {
-  const Scene scene = test::make_shaken_vat(IntegratorId::velocity_verlet);
+  const Scene scene = make_shaken_vat(IntegratorId::velocity_verlet);
   const Limited without_avx512(InstructionSet::avx2);
   EXPECT_LT(best_instruction_set(), InstructionSet::avx512);
   const Result<Simulation> refused = Simulation::create(scene, nullptr, InstructionSet::avx512);
@@ -64,7 +64,7 @@ TEST(InstructionSet, ASimulationIsRefusedOneThatTheMachineLacks) {
 }
 
 TEST(InstructionSet, ASimulationKeepsItsOwn) {
-  const Scene scene = test::make_shaken_vat(IntegratorId::velocity_verlet);
+  const Scene scene = make_shaken_vat(IntegratorId::velocity_verlet);
   for (const InstructionSet set : available_instruction_sets()) {
     Simulation simulation = Simulation::create(scene, nullptr, set).value();
     EXPECT_EQ(simulation.instruction_set(), set);
@@ -78,4 +78,4 @@ TEST(InstructionSet, ASimulationKeepsItsOwn) {
 }
 
 }  // namespace
-}  // namespace vat::instruction_set_test
+}  // namespace vat::test::instruction_set_test

@@ -7,10 +7,9 @@
 
 #include "tests/support/thread_runner.h"
 
-namespace vat::parallel_test {
+namespace vat::test::parallel_test {
 namespace {
 
-using test::ThreadRunner;
 using Range = std::pair<std::size_t, std::size_t>;
 
 std::set<Range> ranges_of(TaskRunner* runner, std::size_t count) {
@@ -54,4 +53,4 @@ TEST(Parallel, ASingleBlockStaysOnTheCallersThread) {
 }
 
 }  // namespace
-}  // namespace vat::parallel_test
+}  // namespace vat::test::parallel_test

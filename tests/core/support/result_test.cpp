@@ -9,30 +9,6 @@ namespace {
 
 const Error kError{"out_of_range", "/bodies/0/radius", "must be above 0"};
 
-TEST(Result, HoldsAValue) {
-  Result<int> result = 3;
-  EXPECT_TRUE(result.ok());
-  EXPECT_TRUE(result);
-  EXPECT_EQ(result.value(), 3);
-  result.value() = 4;
-  EXPECT_EQ(result.value(), 4);
-}
-
-TEST(Result, GivesAwayAValueThatCannotBeCopied) {
-  Result<std::unique_ptr<int>> result = std::make_unique<int>(5);
-  const std::unique_ptr<int> taken = std::move(result).value();
-  EXPECT_EQ(*taken, 5);
-}
-
-TEST(Result, HoldsOneOrManyErrors) {
-  const Result<int> one = kError;
-  EXPECT_FALSE(one);
-  ASSERT_EQ(one.errors().size(), 1U);
-  EXPECT_EQ(one.errors()[0].path, "/bodies/0/radius");
-  const Result<int> many = Errors{kError, kError};
-  EXPECT_EQ(many.errors().size(), 2U);
-}
-
 TEST(Result, StatusIsFineUntilItHasAnError) {
   EXPECT_TRUE(Status().ok());
   EXPECT_TRUE(Status().errors().empty());

@@ -17,7 +17,7 @@
 
 #include "tests/support/wait.h"
 
-namespace vat::thread_pool_test {
+namespace vat::test::thread_pool_test {
 namespace {
 
 class TaskRunnerThreads : public testing::TestWithParam<std::size_t> {};
@@ -52,29 +52,21 @@ TEST_P(TaskRunnerThreads, ManyRunsSeeEachOthersWrites) {
   EXPECT_EQ(values, std::vector<long>(kBlocks, expected));
 }
 
-TEST_P(TaskRunnerThreads, PassesAnExceptionToTheCallerAndStaysUsable) {
+TEST_P(TaskRunnerThreads, PassesOneExceptionToTheCallerAndStaysUsable) {
   ThreadPoolRunner runner(GetParam());
-  const auto failing = [](std::size_t b) {
-    if (b == 3) throw std::runtime_error("block 3");
-  };
-  for (int i = 0; i < 200; ++i) {
+  for (int i = 0; i < 400; ++i) {
+    const auto failing = [&](std::size_t b) {
+      if (b == 3 || i % 2 == 0) throw std::runtime_error("block");
+    };
     try {
       runner.run(8, failing);
       FAIL() << "the exception was swallowed";
     } catch (const std::runtime_error& error) {
-      EXPECT_STREQ(error.what(), "block 3");
+      EXPECT_STREQ(error.what(), "block");
     }
     std::atomic<int> calls = 0;
     runner.run(8, [&](std::size_t) { ++calls; });
     EXPECT_EQ(calls, 8);
-  }
-}
-
-TEST_P(TaskRunnerThreads, SeveralThrowingBlocksGiveOneException) {
-  ThreadPoolRunner runner(GetParam());
-  for (int i = 0; i < 200; ++i) {
-    EXPECT_THROW(runner.run(16, [](std::size_t) { throw std::logic_error("each"); }),
-                 std::logic_error);
   }
 }
 
@@ -143,22 +135,6 @@ class Threads {
   std::condition_variable changed_;
   std::set<std::thread::id> ids_;
 };
-
-TEST(TaskRunner, TheCallerAndASleepingHelperWorkAtOnce) {
-  ThreadPoolRunner runner(2);
-  for (int i = 0; i < 3; ++i) {
-    Threads threads(2);
-    std::atomic<int> met = 0;
-    runner.run(3, [&](std::size_t b) {
-      if (b == 0) {
-        work();
-      } else if (threads.arrive()) {
-        ++met;
-      }
-    });
-    ASSERT_EQ(met, 2);
-  }
-}
 
 TEST(TaskRunner, ShortRunsWakeNoHelpers) {
   using std::chrono::microseconds;
@@ -326,17 +302,17 @@ TEST(TaskRunner, WaitingThreadsSleep) {
   constexpr std::chrono::milliseconds kWait(200);
   ThreadPoolRunner runner(4);
   runner.run(4, [](std::size_t) {});
-  EXPECT_LT(processor_load([&] { test::pause(kWait); }), kMaxLoad);
+  EXPECT_LT(processor_load([&] { pause(kWait); }), kMaxLoad);
 
   const auto caller = std::this_thread::get_id();
   Threads threads(2);
   const auto wait_for_helper = [&](std::size_t b) {
     if (b == 0) return work();
     EXPECT_TRUE(threads.arrive());
-    if (std::this_thread::get_id() != caller) test::pause(kWait);
+    if (std::this_thread::get_id() != caller) pause(kWait);
   };
   EXPECT_LT(processor_load([&] { runner.run(3, wait_for_helper); }), kMaxLoad);
 }
 
 }  // namespace
-}  // namespace vat::thread_pool_test
+}  // namespace vat::test::thread_pool_test

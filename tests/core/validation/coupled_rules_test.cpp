@@ -7,10 +7,8 @@
 
 // Unsupported features of liquids in which walls and solids take part.
 
-namespace vat::coupled_rules_test {
+namespace vat::test::coupled_rules_test {
 namespace {
-
-using namespace test;
 
 BodyDescription make_drop() {
   return make_body("drop", BodyKind::liquid, "water", make_particles({{0, 0, 0}}, 1), 0.05);
@@ -117,4 +115,4 @@ TEST(CoupledLiquids, ThatAttractThemselvesNeedRoomWhereverTheyAreListed) {
 }
 
 }  // namespace
-}  // namespace vat::coupled_rules_test
+}  // namespace vat::test::coupled_rules_test

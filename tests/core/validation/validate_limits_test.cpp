@@ -10,7 +10,7 @@
 #include "core/validation/validate_parts.h"
 #include "tests/support/errors.h"
 
-namespace vat::validate_limits_test {
+namespace vat::test::validate_limits_test {
 namespace {
 
 TEST(Validate, LimitsTheTotals) {
@@ -21,7 +21,7 @@ TEST(Validate, LimitsTheTotals) {
   const BoxShape box{{0, 0, 0}, {1, 1, 1}};
   scene.bodies = {{"a", BodyKind::rigid, "m", box, 0.0125},
                   {"b", BodyKind::rigid, "m", box, 0.0125}};
-  const auto codes = [&] { return test::errors_of(find_errors(scene)); };
+  const auto codes = [&] { return errors_of(find_errors(scene)); };
   EXPECT_EQ(codes(), "too_many /bodies");  // 2 x 80^3 particles
   scene.bodies[0].spacing = 0.02;
   EXPECT_EQ(codes(), "");
@@ -53,20 +53,20 @@ Scene crowded_scene(BodyKind kind, Real radius) {
 
 TEST(Validate, LimitsTheNeighboursOfALiquid) {
   Scene scene = crowded_scene(BodyKind::liquid, 0.005);
-  EXPECT_EQ(test::errors_of(find_errors(scene)), "");
+  EXPECT_EQ(errors_of(find_errors(scene)), "");
   scene.materials[0].liquid->support_radius = 100;
   const Errors errors = find_errors(scene);  // 3375^2 neighbours
-  ASSERT_EQ(test::errors_of(errors), "too_many /bodies");
+  ASSERT_EQ(errors_of(errors), "too_many /bodies");
   EXPECT_THAT(errors[0].message, testing::HasSubstr("support radius of \"m\""));
 }
 
 TEST(Validate, LimitsTheNeighboursWithinABody) {
   Scene scene = crowded_scene(BodyKind::deformable, 100);
-  EXPECT_EQ(test::errors_of(find_errors(scene)), "");  // the particles do not collide
+  EXPECT_EQ(errors_of(find_errors(scene)), "");  // the particles do not collide
   scene.materials[0].self_contact = SpringConstants{1, 0};
-  EXPECT_EQ(test::errors_of(find_errors(scene)), "too_many /bodies");
+  EXPECT_EQ(errors_of(find_errors(scene)), "too_many /bodies");
   scene.bodies[0].radius = 0.005;
-  EXPECT_EQ(test::errors_of(find_errors(scene)), "");
+  EXPECT_EQ(errors_of(find_errors(scene)), "");
 }
 
 TEST(Validate, LimitsTheNeighboursOfOtherBodies) {
@@ -74,21 +74,21 @@ TEST(Validate, LimitsTheNeighboursOfOtherBodies) {
   scene.bodies.push_back(scene.bodies[0]);
   scene.bodies[1].name = "another";
   scene.bodies[1].position = {0.15, 0, 0};
-  EXPECT_EQ(test::errors_of(find_errors(scene)), "");
+  EXPECT_EQ(errors_of(find_errors(scene)), "");
   scene.interfaces = {{{"m", "m"}, {1, 0}, 1.0}};
   const Errors errors = find_errors(scene);
-  ASSERT_EQ(test::errors_of(errors), "too_many /bodies");
+  ASSERT_EQ(errors_of(errors), "too_many /bodies");
   EXPECT_THAT(errors[0].message, testing::HasSubstr("threshold of \"crowd\" and \"another\""));
   scene.interfaces.clear();
   scene.bodies[1].radius = 1;
-  EXPECT_EQ(test::errors_of(find_errors(scene)), "too_many /bodies");
+  EXPECT_EQ(errors_of(find_errors(scene)), "too_many /bodies");
 }
 
 TEST(Validate, LetsALargeParticleLieInALiquid) {
   Scene scene = crowded_scene(BodyKind::liquid, 0.005);  // each of 3375 particles reaches the ball
   scene.bodies.push_back(
       {"ball", BodyKind::rigid, "m", ParticleShape{{{0, 0, 1}}, {}, {1}, {1}, {}}});
-  EXPECT_EQ(test::errors_of(find_errors(scene)), "");
+  EXPECT_EQ(errors_of(find_errors(scene)), "");
 }
 
 TEST(Validate, LimitsTheLatticesTogetherAndStopsAtTheFirstExcess) {
@@ -100,9 +100,9 @@ TEST(Validate, LimitsTheLatticesTogetherAndStopsAtTheFirstExcess) {
   for (int i = 0; i < 100; ++i) {
     scene.bodies.push_back({"rod " + std::to_string(i), BodyKind::rigid, "m", rod, 0.01});
   }
-  EXPECT_EQ(test::errors_of(find_errors(scene)), "too_many /bodies/1/spacing");
+  EXPECT_EQ(errors_of(find_errors(scene)), "too_many /bodies/1/spacing");
   scene.bodies.resize(1);
-  EXPECT_EQ(test::errors_of(find_errors(scene)), "");
+  EXPECT_EQ(errors_of(find_errors(scene)), "");
 }
 
 TEST(Validate, LimitsTheTrianglesOfAllMeshes) {
@@ -128,7 +128,7 @@ TEST(Validate, ChecksAnInterfaceAlone) {
   present.bodies.assign(2, {points, radii, 0});
   InterfaceDescription interface { {"m", "m"}, {1, 0}, 0.01 };
   const auto codes = [&] {
-    return test::errors_of(find_interface_errors(two, present, interface, "/interface"));
+    return errors_of(find_interface_errors(two, present, interface, "/interface"));
   };
   EXPECT_EQ(codes(), "");
   interface.constants.damping = -1;
@@ -142,4 +142,4 @@ TEST(Validate, ChecksAnInterfaceAlone) {
 }
 
 }  // namespace
-}  // namespace vat::validate_limits_test
+}  // namespace vat::test::validate_limits_test

@@ -13,7 +13,7 @@
 #include "tests/core/sampling/mesh_shapes.h"
 #include "tests/support/errors.h"
 
-namespace vat::validate_test {
+namespace vat::test::validate_test {
 namespace {
 
 constexpr Real kNan = std::numeric_limits<Real>::quiet_NaN();
@@ -57,6 +57,10 @@ TEST(Validate, FindsNothingWrongInAValidScene) {
   EXPECT_TRUE(find_errors(Scene{}).empty());
 }
 
+MeshShape ball_mesh() {
+  return box_mesh({0.4, 0.4, 0.7}, {0.6, 0.6, 0.9});
+}
+
 struct Mistake {
   const char* error;
   std::function<void(Scene&)> make;
@@ -78,22 +82,10 @@ const Mistake kMistakes[] = {
     {"out_of_range /vat/motion/stroke", [](Scene& s) { s.vat->motion->stroke = kNan; }},
     {"out_of_range /vat/motion/period", [](Scene& s) { s.vat->motion->period = 0; }},
     {"out_of_range /vat/motion/period", [](Scene& s) { s.vat->motion->stroke = 1e5; }},
-    {"out_of_range /sleeping/speed",
-     [](Scene& s) {
-       s.sleeping = Sleeping{0, 0.5};
-     }},
-    {"out_of_range /sleeping/speed",
-     [](Scene& s) {
-       s.sleeping = Sleeping{1.5, 0.5};
-     }},
-    {"out_of_range /sleeping/after",
-     [](Scene& s) {
-       s.sleeping = Sleeping{0.01, 0};
-     }},
-    {"out_of_range /sleeping/after",
-     [](Scene& s) {
-       s.sleeping = Sleeping{0.01, kNan};
-     }},
+    {"out_of_range /sleeping/speed", [](Scene& s) { s.sleeping.emplace().speed = 0; }},
+    {"out_of_range /sleeping/speed", [](Scene& s) { s.sleeping.emplace().speed = 1.5; }},
+    {"out_of_range /sleeping/after", [](Scene& s) { s.sleeping.emplace().after = 0; }},
+    {"out_of_range /sleeping/after", [](Scene& s) { s.sleeping.emplace().after = kNan; }},
     {"out_of_range /numerics/step", [](Scene& s) { s.numerics.step = 0; }},
     {"out_of_range /numerics/tick", [](Scene& s) { s.numerics.tick = 2; }},
     {"out_of_range /numerics/tick", [](Scene& s) { s.numerics.tick = 0.0205; }},
@@ -140,7 +132,8 @@ const Mistake kMistakes[] = {
      [](Scene& s) { s.interfaces[0].materials[0] = "vat"; }},
     {"duplicate /interfaces/2/materials",
      [](Scene& s) {
-       s.interfaces.push_back(InterfaceDescription{{"vat", "water"}, {1, 1}, {}});
+       s.interfaces.push_back(s.interfaces[0]);
+       std::swap(s.interfaces[2].materials[0], s.interfaces[2].materials[1]);
      }},
     {"out_of_range /interfaces/1/stiffness",
      [](Scene& s) { s.interfaces[1].constants.stiffness = 1e13; }},
@@ -174,30 +167,24 @@ const Mistake kMistakes[] = {
     {"outside_vat /bodies/2", [](Scene& s) { s.bodies[2].position.z() = 0.3; }},
     {"not_allowed /bodies/2/springs", [](Scene& s) { s.bodies[2].springs = s.bodies[3].springs; }},
     {"out_of_range /bodies/2/shape/radius",
-     [](Scene& s) {
-       s.bodies[2].shape = SphereShape{{0.5, 0.5, 0.8}, -1};
-     }},
-    {"out_of_range /bodies/2/shape/size",
-     [](Scene& s) {
-       s.bodies[2].shape = BoxShape{{0.5, 0.5, 0.8}, {1, 0, 1}};
-     }},
+     [](Scene& s) { std::get<SphereShape>(s.bodies[2].shape).radius = -1; }},
+    {"out_of_range /bodies/1/shape/size",
+     [](Scene& s) { std::get<BoxShape>(s.bodies[1].shape).size.y() = 0; }},
     {"out_of_range /bodies/2/shape/axis",
      [](Scene& s) {
        s.bodies[2].shape = CylinderShape{{0.5, 0.5, 0.8}, {0, 0, 0}, 0.1, 0.1};
      }},
     {"open_mesh /bodies/2/shape",
      [](Scene& s) {
-       MeshShape mesh = box_mesh({0.4, 0.4, 0.7}, {0.6, 0.6, 0.9});
+       MeshShape mesh = ball_mesh();
        mesh.triangles.pop_back();
        s.bodies[2].shape = mesh;
      }},
     {"inverted_mesh /bodies/2/shape",
-     [](Scene& s) {
-       s.bodies[2].shape = inside_out(box_mesh({0.4, 0.4, 0.7}, {0.6, 0.6, 0.9}));
-     }},
+     [](Scene& s) { s.bodies[2].shape = inside_out(ball_mesh()); }},
     {"out_of_range /bodies/2/shape/triangles/3",
      [](Scene& s) {
-       MeshShape mesh = box_mesh({0.4, 0.4, 0.7}, {0.6, 0.6, 0.9});
+       MeshShape mesh = ball_mesh();
        mesh.triangles[3][1] = 8;
        s.bodies[2].shape = mesh;
      }},
@@ -231,28 +218,20 @@ const Mistake kMistakes[] = {
     {"out_of_range /materials/0/tearing_strain",
      [](Scene& s) { s.materials[0].tearing_strain = 0; }},
     {"out_of_range /materials/0/plasticity/yield_strain",
-     [](Scene& s) {
-       s.materials[0].plasticity = Plasticity{-1, 0, 0, 0.5};
-     }},
+     [](Scene& s) { s.materials[0].plasticity.emplace().yield_strain = -1; }},
     {"out_of_range /materials/0/plasticity/hardening",
-     [](Scene& s) {
-       s.materials[0].plasticity = Plasticity{0.1, -1, 0, 0.5};
-     }},
+     [](Scene& s) { s.materials[0].plasticity.emplace().hardening = -1; }},
     {"out_of_range /materials/0/plasticity/relaxation_time",
-     [](Scene& s) {
-       s.materials[0].plasticity = Plasticity{0.1, 0, -1, 0.5};
-     }},
+     [](Scene& s) { s.materials[0].plasticity.emplace().relaxation_time = -1; }},
     {"out_of_range /materials/0/plasticity/max_strain",
-     [](Scene& s) {
-       s.materials[0].plasticity = Plasticity{0.1, 0, 0, 1};
-     }},
+     [](Scene& s) { s.materials[0].plasticity.emplace().max_strain = 1; }},
 };
 
 TEST(Validate, FindsEveryMistakeAlone) {
   for (const auto& [error, make] : kMistakes) {
     Scene scene = valid_scene();
     make(scene);
-    EXPECT_EQ(test::errors_of(find_errors(scene)), error);
+    EXPECT_EQ(errors_of(find_errors(scene)), error);
     EXPECT_FALSE(Simulation::create(scene).ok()) << error;
   }
 }
@@ -283,7 +262,7 @@ TEST(Validate, ReportsEveryMistakeAtOnce) {
   scene.materials[0].density = kNan;
   scene.bodies[0].spacing = 0;
   scene.bodies[2].mass = -1;
-  EXPECT_EQ(test::errors_of(find_errors(scene)),
+  EXPECT_EQ(errors_of(find_errors(scene)),
             "out_of_range /materials/0/density\nout_of_range /numerics/step\n"
             "out_of_range /bodies/0/spacing\nout_of_range /bodies/2/mass");
 }
@@ -295,9 +274,7 @@ TEST(Validate, ChecksABodyToBeAdded) {
   body.name = "another ball";
   EXPECT_TRUE(find_body_errors(scene, body, "/body").empty());
   body.material = "cheese";
-  const Errors errors = find_body_errors(scene, body, "/body");
-  ASSERT_EQ(errors.size(), 1u);
-  EXPECT_EQ(errors[0].path, "/body/material");
+  EXPECT_EQ(errors_of(find_body_errors(scene, body, "/body")), "unknown_name /body/material");
 }
 
 TEST(Validate, SamplesOnlyTheBodyToBeAdded) {
@@ -309,11 +286,11 @@ TEST(Validate, SamplesOnlyTheBodyToBeAdded) {
   scene.bodies[0].spacing = 1e-5;  // too fine to sample
   BodyDescription body = scene.bodies[2];
   body.name = "another ball";
-  EXPECT_EQ(test::errors_of(find_body_errors(scene, present, body, "/body")), "");
+  EXPECT_EQ(errors_of(find_body_errors(scene, present, body, "/body")), "");
   present.bodies[1].springs = kMaxSprings;
-  EXPECT_EQ(test::errors_of(find_body_errors(scene, present, body, "/body")), "");
+  EXPECT_EQ(errors_of(find_body_errors(scene, present, body, "/body")), "");
   present.bodies[1].springs = kMaxSprings + 1;
-  EXPECT_EQ(test::errors_of(find_body_errors(scene, present, body, "/body")), "too_many /body");
+  EXPECT_EQ(errors_of(find_body_errors(scene, present, body, "/body")), "too_many /body");
 }
 
 TEST(Validate, AddsABodyInTheMovedVat) {
@@ -321,9 +298,7 @@ TEST(Validate, AddsABodyInTheMovedVat) {
   scene.bodies.clear();
   BodyDescription body = valid_scene().bodies[2];  // 0.4 to 0.6 m of 0 to 1 m
   CurrentScene present;
-  const auto codes = [&] {
-    return test::errors_of(find_body_errors(scene, present, body, "/body"));
-  };
+  const auto codes = [&] { return errors_of(find_body_errors(scene, present, body, "/body")); };
   EXPECT_EQ(codes(), "");
   present.vat_offset = {0.5, 0, 0};
   EXPECT_EQ(codes(), "outside_vat /body");
@@ -332,4 +307,4 @@ TEST(Validate, AddsABodyInTheMovedVat) {
 }
 
 }  // namespace
-}  // namespace vat::validate_test
+}  // namespace vat::test::validate_test

@@ -7,12 +7,8 @@
 #include "core/validation/validate.h"
 #include "tests/core/validation/warned_scenes.h"
 
-namespace vat::warnings_step_test {
+namespace vat::test::warnings_step_test {
 namespace {
-
-using test::oscillator;
-using test::pool;
-using test::warnings_of;
 
 TEST(Warnings, AreOfTheStepThatAnAccuracyChooses) {
   Scene scene = oscillator(1e8, 0);
@@ -165,4 +161,4 @@ TEST(Warnings, OfSoundAndViscosityBeyondTheStep) {
 }
 
 }  // namespace
-}  // namespace vat::warnings_step_test
+}  // namespace vat::test::warnings_step_test

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "tests/stability/adversarial/adversarial.h"
+#include "tests/support/name_of.h"
 
 namespace vat::stability::adversarial_test {
 namespace {
@@ -37,13 +38,7 @@ TEST_P(Adversarial, EndsAsItMust) {
   }
 }
 
-std::string test_name(const testing::TestParamInfo<std::string>& info) {
-  std::string name;
-  for (const char c : info.param) name += std::isalnum(static_cast<unsigned char>(c)) ? c : '_';
-  return name;
-}
-
-INSTANTIATE_TEST_SUITE_P(All, Adversarial, testing::ValuesIn(all_groups()), test_name);
+INSTANTIATE_TEST_SUITE_P(All, Adversarial, testing::ValuesIn(all_groups()), test::NameOf());
 
 TEST(AdversarialCases, AreManyAndDiffer) {
   std::set<std::string> names;

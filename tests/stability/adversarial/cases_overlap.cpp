@@ -3,18 +3,13 @@
 
 #include "tests/stability/adversarial/cases.h"
 #include "tests/stability/builders.h"
+#include "tests/support/totals.h"
 
 namespace vat::stability {
 
 Real relative_momentum(const Simulation& simulation) {
-  Vec3 momentum = Vec3::Zero();
-  Real motion = 0;
-  for (const BodyView& body : simulation.bodies()) {
-    for (std::size_t i = 0; i < body.masses.size(); ++i) {
-      momentum += body.masses[i] * body.velocities[i];
-      motion += body.masses[i] * body.velocities[i].norm();
-    }
-  }
+  const Real motion = test::motion_of(simulation).momentum;
+  const Vec3 momentum = test::totals_of(simulation.diagnostics()).momentum;
   return motion > 0 ? momentum.norm() / motion : 0;
 }
 

@@ -20,8 +20,16 @@ Scene make_trio() {
 
 using Change = void (*)(Scene&);
 
-void set_springs(Scene& scene, const SpringConstants& constants) {
-  for (SpringDescription& spring : scene.bodies[1].springs) spring.constants = constants;
+void set_contacts(Scene& scene, Real stiffness, Real damping) {
+  scene.default_interface = {stiffness, damping};
+}
+
+void set_walls(Scene& scene, Real stiffness) {
+  for (auto& interface : scene.interfaces) interface.constants = {stiffness, 0};
+}
+
+void set_springs(Scene& scene, Real stiffness, Real damping) {
+  for (auto& spring : scene.bodies[1].springs) spring.constants = {stiffness, damping};
 }
 
 void set_masses(Scene& scene, Real mass) {
@@ -33,31 +41,16 @@ void set_masses(Scene& scene, Real mass) {
 
 /// Disabled forces mean free flight: k = 0 is valid.
 const std::pair<const char*, Change> kMild[] = {
-    {"no stiffness of contacts",
-     [](Scene& s) {
-       s.default_interface = {0, 0};
-     }},
-    {"contacts that only damp",
-     [](Scene& s) {
-       s.default_interface = {0, 1};
-     }},
-    {"no stiffness of springs",
-     [](Scene& s) {
-       set_springs(s, {0, 0});
-     }},
-    {"springs that only damp",
-     [](Scene& s) {
-       set_springs(s, {0, 1});
-     }},
+    {"no stiffness of contacts", [](Scene& s) { set_contacts(s, 0, 0); }},
+    {"contacts that only damp", [](Scene& s) { set_contacts(s, 0, 1); }},
+    {"no stiffness of springs", [](Scene& s) { set_springs(s, 0, 0); }},
+    {"springs that only damp", [](Scene& s) { set_springs(s, 0, 1); }},
     {"no stiffness of the liquid", [](Scene& s) { s.materials[0].liquid->stiffness = 0; }},
     {"no viscosity", [](Scene& s) { s.materials[0].liquid->viscosity = 0; }},
     {"least density", [](Scene& s) { s.materials[1].density = kMinDensity; }},
     {"no gravity", [](Scene& s) { s.gravity = Vec3::Zero(); }},
     {"least step", [](Scene& s) { s.numerics.step = s.numerics.tick = kMinStep; }},
-    {"walls without stiffness",
-     [](Scene& s) {
-       for (auto& interface : s.interfaces) interface.constants = {0, 0};
-     }},
+    {"walls without stiffness", [](Scene& s) { set_walls(s, 0); }},
     {"greatest threshold",
      [](Scene& s) {
        s.interfaces.push_back({{"water", "wood"}, {0.1, 0}, 8 * kSpacing});
@@ -68,22 +61,10 @@ const std::pair<const char*, Change> kMild[] = {
 };
 
 const std::pair<const char*, Change> kHarsh[] = {
-    {"greatest stiffness of contacts",
-     [](Scene& s) {
-       s.default_interface = {kMaxStiffness, 0};
-     }},
-    {"greatest damping of contacts",
-     [](Scene& s) {
-       s.default_interface = {1000, kMaxDamping};
-     }},
-    {"greatest stiffness of springs",
-     [](Scene& s) {
-       set_springs(s, {kMaxStiffness, 0});
-     }},
-    {"greatest damping of springs",
-     [](Scene& s) {
-       set_springs(s, {1000, kMaxDamping});
-     }},
+    {"greatest stiffness of contacts", [](Scene& s) { set_contacts(s, kMaxStiffness, 0); }},
+    {"greatest damping of contacts", [](Scene& s) { set_contacts(s, 1000, kMaxDamping); }},
+    {"greatest stiffness of springs", [](Scene& s) { set_springs(s, kMaxStiffness, 0); }},
+    {"greatest damping of springs", [](Scene& s) { set_springs(s, 1000, kMaxDamping); }},
     {"greatest stiffness of the liquid",
      [](Scene& s) { s.materials[0].liquid->stiffness = kMaxStiffness; }},
     {"greatest viscosity", [](Scene& s) { s.materials[0].liquid->viscosity = kMaxViscosity; }},
@@ -93,18 +74,10 @@ const std::pair<const char*, Change> kHarsh[] = {
     {"liquid of the least density", [](Scene& s) { s.materials[0].density = kMinDensity; }},
     {"greatest gravity", [](Scene& s) { s.gravity = Vec3(kMaxGravity, 0, -kMaxGravity); }},
     {"greatest step", [](Scene& s) { s.numerics.step = s.numerics.tick = kMaxStep; }},
-    {"greatest speed",
-     [](Scene& s) {
-       s.bodies[2].velocity = {kMaxSpeed, 0, 0};
-     }},
+    {"greatest speed", [](Scene& s) { s.bodies[2].velocity.x() = kMaxSpeed; }},
     {"greatest spin",
-     [](Scene& s) {
-       s.bodies[2].angular_velocity = {kMaxAngularSpeed, 0, 1};
-     }},
-    {"greatest stiffness of walls",
-     [](Scene& s) {
-       for (auto& interface : s.interfaces) interface.constants = {kMaxStiffness, 0};
-     }},
+     [](Scene& s) { s.bodies[2].angular_velocity = Vec3(kMaxAngularSpeed, 0, 1); }},
+    {"greatest stiffness of walls", [](Scene& s) { set_walls(s, kMaxStiffness); }},
 };
 
 }  // namespace
@@ -141,10 +114,7 @@ void add_refusal_cases(Cases& cases) {
       {"a body without particles",
        [](Scene& s) { std::get<ParticleShape>(s.bodies[0].shape).positions.clear(); }},
       {"negative stiffness", [](Scene& s) { s.default_interface.stiffness = -1; }},
-      {"stiffness that is not a number",
-       [](Scene& s) {
-         set_springs(s, {kNan, 0});
-       }},
+      {"stiffness that is not a number", [](Scene& s) { set_springs(s, kNan, 0); }},
       {"infinite place", [](Scene& s) { s.bodies[0].position.x() = kInf; }},
       {"a place of 1e30 m", [](Scene& s) { s.bodies[0].position.x() = 1e30; }},
       {"velocity that is not a number", [](Scene& s) { s.bodies[1].velocity.y() = kNan; }},

@@ -6,6 +6,7 @@
 
 #include "core/validation/validate.h"
 #include "protocol/scene/scene_json.h"
+#include "tests/support/name_of.h"
 
 namespace vat::stability::random_vat_test {
 namespace {
@@ -43,8 +44,7 @@ TEST_P(RandomVatsOf, LoseNothingWithSubSteps) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Solvers, RandomVatsOf, testing::ValuesIn(kSolvers),
-                         [](const auto& solver) { return to_string(solver.param); });
+INSTANTIATE_TEST_SUITE_P(Solvers, RandomVatsOf, testing::ValuesIn(kSolvers), test::NameOf());
 
 }  // namespace
 }  // namespace vat::stability::random_vat_test

@@ -3,10 +3,11 @@
 #include <cmath>
 
 #include "core/limits.h"
+#include "tests/stability/maps/projection_map.h"
 #include "tests/stability/maps/step_map.h"
 #include "tests/support/scenes.h"
 
-namespace vat::stability::step_map_test {
+namespace vat::stability::maps_test {
 namespace {
 
 // The start contains other modes besides the fastest one. A short run may therefore pass slightly
@@ -35,5 +36,15 @@ TEST(StepMap, HasNoLimitForImplicitSprings) {
   }
 }
 
+TEST(ProjectionMap, IsStableAtAnyStepAndMassRatio) {
+  for (const ProjectionPoint& point : projection_points(true)) {
+    const ProjectionPoint seen = measure_projection(point);
+    EXPECT_TRUE(is_stable(seen)) << to_string(seen.integrator) << ", mass ratio " << seen.mass_ratio
+                                 << ", step " << seen.step << ": gain " << seen.energy_gain
+                                 << ", overlap " << seen.overlap << ", kinetic energy "
+                                 << seen.kinetic_energy << ", guarded " << seen.is_guarded;
+  }
+}
+
 }  // namespace
-}  // namespace vat::stability::step_map_test
+}  // namespace vat::stability::maps_test
