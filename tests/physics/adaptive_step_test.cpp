@@ -7,8 +7,10 @@
 
 // Errors and costs of adaptive step control.
 
-namespace vat::test::adaptive_step_test {
+namespace vat::adaptive_step_test {
 namespace {
+
+using namespace test;
 
 constexpr Real kGravity = 9.81;
 constexpr Real kReach = 0.1;       // contact distance of the walls [m]
@@ -22,7 +24,8 @@ Scene make_adaptive(Scene scene, Real tolerance) {
 
 /// RIG-4: a mass of 1 falls from a height onto a floor.
 Scene make_bounce(Real stiffness, Real step, Real height = 1) {
-  Scene scene = make_scene(IntegratorId::velocity_verlet, step, {make_material("steel")});
+  Scene scene = make_scene(IntegratorId::velocity_verlet, step);
+  scene.materials = {make_material("steel")};
   scene.interfaces = {{{"steel", kVatMaterial}, {stiffness, 0}, kReach}};
   scene.vat = Vat{Vec3(-50, -50, 0), Vec3(50, 50, 50), false, {}};
   scene.gravity = {0, 0, -kGravity};
@@ -112,8 +115,15 @@ TEST(AdaptiveStep, KeepsTheToleranceFromTheFirstStepOn) {
   for (const IntegratorId integrator :
        {IntegratorId::velocity_verlet, IntegratorId::heun, IntegratorId::runge_kutta_4}) {
     for (const Real tolerance : {1e-3, 1e-5}) {
-      const Scene scene = make_oscillator(integrator, 0.1, {100, 0}, 1.2);
-      Simulation simulation = make_advanced(make_adaptive(scene, tolerance), 100);
+      Scene scene = make_scene(integrator, 0.1);
+      scene.materials = {make_material("m")};
+      BodyDescription body = make_body("oscillator", BodyKind::deformable, "m",
+                                       make_particles({{0, 0, 0}, {1.2, 0, 0}}, 1), 0.01);
+      body.springs = {{0, 1, {100, 0}, 1.0}};
+      std::get<ParticleShape>(body.shape).fixed = {0};
+      scene.bodies = {body};
+      Simulation simulation = make_simulation(make_adaptive(scene, tolerance));
+      simulation.advance(100);
       const Real expected = 1 + 0.2 * std::cos(100);
       EXPECT_LT(std::abs(position_of(simulation, 0, 1).x() - expected), 0.2 * 100 * tolerance)
           << to_string(integrator) << ' ' << tolerance;
@@ -145,7 +155,8 @@ Scene make_compressed_liquid(int dimensions) {
 // density.
 TEST(AdaptiveStep, OfACompressedLiquidIsStable) {
   for (const int dimensions : {2, 3}) {
-    Simulation simulation = make_advanced(make_compressed_liquid(dimensions), 100);
+    Simulation simulation = make_simulation(make_compressed_liquid(dimensions));
+    simulation.advance(100);
     const Real before = simulation.diagnostics().kinetic_energy;
     simulation.advance(500);
     EXPECT_LT(simulation.diagnostics().kinetic_energy, 5 * before) << dimensions;
@@ -156,7 +167,8 @@ TEST(AdaptiveStep, OfACompressedLiquidIsStable) {
 // particle by ten wall thicknesses.
 TEST(AdaptiveStep, LetsNoProjectilePassAThinWall) {
   for (const IntegratorId integrator : kIntegrators) {
-    Scene scene = make_scene(integrator, 0.01, {make_material("steel")});
+    Scene scene = make_scene(integrator, 0.01);
+    scene.materials = {make_material("steel")};
     scene.interfaces = {{{"steel", "steel"}, {1e5, 0}, 0.05}};
     scene.bodies = {
         make_body("wall", BodyKind::rigid, "steel", make_particles(make_lattice(1, 9, 9, 0.03), 10),
@@ -203,7 +215,8 @@ TEST(AdaptiveStep, LimitsTheTravelOfALiquid) {
 
 // The stiff spring of this body needs short steps only if it oscillates.
 TEST(AdaptiveStep, FollowsTheMotionOfASpringBody) {
-  Scene scene = make_scene(IntegratorId::velocity_verlet, 0.01, {make_material("rubber")});
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 0.01);
+  scene.materials = {make_material("rubber")};
   BodyDescription body = make_body("pair", BodyKind::deformable, "rubber",
                                    make_particles({{0, 0, 0}, {1, 0, 0}, {1.1, 0, 0}}, 1), 0.01);
   // The soft spring pulls with 0.1 N, half of which acts on the third particle.
@@ -221,4 +234,4 @@ TEST(AdaptiveStep, FollowsTheMotionOfASpringBody) {
 }
 
 }  // namespace
-}  // namespace vat::test::adaptive_step_test
+}  // namespace vat::adaptive_step_test

@@ -9,8 +9,10 @@
 
 // The catalogue scene in which liquid presses on soft tissue.
 
-namespace vat::test::blood_vessel_test {
+namespace vat::blood_vessel_test {
 namespace {
+
+using namespace test;
 
 constexpr Real kSpacing = 0.025;
 constexpr std::size_t kLayers = 3;  // layers of a wall
@@ -73,4 +75,4 @@ TEST_F(BloodVessel, SwellsWithEachBeatAndMostWhereTheTissueIsWeak) {
 }
 
 }  // namespace
-}  // namespace vat::test::blood_vessel_test
+}  // namespace vat::blood_vessel_test

@@ -7,13 +7,14 @@
 #include <vector>
 
 #include "protocol/scene/scene_json.h"
-#include "tests/support/name_of.h"
 #include "tests/support/scenes.h"
 
 // Each catalogue scene, for its intended duration of twenty seconds.
 
-namespace vat::test::catalogue_scenes_test {
+namespace vat::catalogue_scenes_test {
 namespace {
+
+using namespace test;
 
 const std::string kFolder = VAT_SOURCE_DIR "/protocol/scenes/";
 
@@ -75,7 +76,14 @@ std::vector<std::string> catalogue() {
   return names;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, CatalogueScene, testing::ValuesIn(catalogue()), NameOf());
+/// Returns the name of a test, which must not contain hyphens.
+std::string test_name(const testing::TestParamInfo<std::string>& parameter) {
+  std::string name = parameter.param;
+  std::ranges::replace(name, '-', '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, CatalogueScene, testing::ValuesIn(catalogue()), test_name);
 
 }  // namespace
-}  // namespace vat::test::catalogue_scenes_test
+}  // namespace vat::catalogue_scenes_test

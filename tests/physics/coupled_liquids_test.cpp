@@ -6,13 +6,14 @@
 
 #include "tests/support/mixed_scenes.h"
 #include "tests/support/momentum_watch.h"
-#include "tests/support/name_of.h"
 #include "tests/support/same_bits.h"
 
 // Liquids in which walls and solids take part: weakly compressible and incompressible.
 
-namespace vat::test::coupled_liquids_test {
+namespace vat::coupled_liquids_test {
 namespace {
+
+using namespace test;
 
 constexpr Real kGravity = 9.81;
 
@@ -127,7 +128,7 @@ TEST_P(CoupledLiquids, GiveTheSameBitsForAnyThreadsAndFromASnapshot) {
 
 INSTANTIATE_TEST_SUITE_P(Solvers, CoupledLiquids,
                          testing::Values(PressureSolver::tait, PressureSolver::incompressible),
-                         NameOf());
+                         [](const auto& solver) { return std::string(to_string(solver.param)); });
 
 // The images of a single particle exert no force on it. It rebounds from an edge as from a face, at
 // any phase of its steps.
@@ -154,7 +155,8 @@ TEST(WeaklyCompressible, ParticleLeavesEdgesAndCornersAsFastAsItCame) {
 }
 
 TEST(Incompressible, KeepsItsPressureIfABodyIsAdded) {
-  Simulation simulation = make_advanced(make_column(12, 20, 0.025), 20);
+  Simulation simulation = make_simulation(make_column(12, 20, 0.025));
+  simulation.advance(20);
   const BodyId water = simulation.bodies()[0].id;
   const std::vector<Real> before = simulation.liquid_fields(water).value().pressure;
   ASSERT_GT(std::ranges::max(before), 1000);
@@ -162,6 +164,42 @@ TEST(Incompressible, KeepsItsPressureIfABodyIsAdded) {
       make_body("drop", BodyKind::liquid, "water", make_particles({{0.1, 0, 0.9}}, 0.625), 0.0125);
   ASSERT_TRUE(simulation.add_body(drop));
   EXPECT_EQ(simulation.liquid_fields(water).value().pressure, before);
+}
+
+/// A ball of `density` above or in a pool of water that is three diameters wide.
+Scene make_ball_in_pool(Real density, Real height) {
+  constexpr Real kSpacing = 0.05;
+  Scene scene = make_liquid_scene(0.01, kSpacing);
+  scene.materials.push_back(make_material("ball", density));
+  scene.default_interface = {1e5, 100};
+  scene.vat = Vat{{0, 0, 0}, {0.6, 0.6, 1.5}, false, {}};
+  const SphereShape ball{Vec3(0.3, 0.3, height), 0.125};
+  std::vector<Vec3> points;
+  for (const Vec3& point : make_lattice(12, 12, 10, kSpacing)) {
+    const Vec3 p = point + Vec3(0.3, 0.3, 0.25);
+    if ((p - ball.center).norm() > ball.radius + kSpacing / 4) points.push_back(p);
+  }
+  scene.bodies = {
+      make_body("water", BodyKind::liquid, "water", make_particles(points, 0.125), kSpacing / 2),
+      BodyDescription{"ball", BodyKind::rigid, "ball", ball, kSpacing}};
+  return scene;
+}
+
+// Pressure and body motion are solved together, so bodies of any density are stable.
+TEST(Incompressible, IsStableWithBodiesOfAnyDensity) {
+  for (const Real density : {10.0, 3000.0}) {
+    const Scene scene = make_ball_in_pool(density, 0.3);
+    Simulation simulation = make_simulation(scene);
+    const Watched watched = watch(simulation, 60);
+    EXPECT_EQ(watched.undone_steps, 0U) << density;
+    EXPECT_LT(watched.speed, 8) << density;
+    const Real z = simulation.bodies()[1].pose->center_of_mass.z();
+    if (density < 1000) {
+      EXPECT_GT(z, 0.45);
+    } else {
+      EXPECT_LT(z, 0.2);
+    }
+  }
 }
 
 /// Records whether damping was solved implicitly.
@@ -261,14 +299,16 @@ TEST(Incompressible, FlowsFromANozzleAndOutThroughADrain) {
 TEST(Incompressible, ReportsIterationsAndErrorsOfItsSolves) {
   Scene scene = make_column(12, 20, 0.025);
   scene.incompressible.divergence_tolerance = 1e-6;
-  Simulation simulation = make_advanced(scene, 1);
+  Simulation simulation = make_simulation(scene);
+  simulation.advance(1);
   const VolumeReport loose = *simulation.diagnostics().volume;
   EXPECT_GT(loose.velocities.iterations, 0);
   EXPECT_LE(loose.velocities.mean, 1e-6);
   EXPECT_LE(loose.velocities.mean, loose.velocities.greatest);
   EXPECT_LE(loose.places.mean, scene.incompressible.density_tolerance);
   scene.incompressible.most_iterations = 3;
-  Simulation short_solves = make_advanced(scene, 1);
+  Simulation short_solves = make_simulation(scene);
+  short_solves.advance(1);
   EXPECT_LE(short_solves.diagnostics().volume->velocities.iterations, 3);
   EXPECT_GT(short_solves.diagnostics().volume->velocities.mean, 1e-6);
   scene.pressure_solver = PressureSolver::tait;
@@ -297,9 +337,8 @@ TEST(Incompressible, CorrectsFewDenseParticlesInFewIterations) {
   // Reducing the mean excess as well would take twice as many.
   EXPECT_LE(report.places.iterations, 20);
   EXPECT_LE(report.places.greatest, limit);
-  EXPECT_NEAR(pushed.diagnostics().max_density_error, report.places.greatest, 1e-6);
   EXPECT_LE(report.places.mean, scene.incompressible.density_tolerance);
 }
 
 }  // namespace
-}  // namespace vat::test::coupled_liquids_test
+}  // namespace vat::coupled_liquids_test

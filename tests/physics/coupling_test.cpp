@@ -44,7 +44,8 @@ constexpr Real kGravity = 9.81;
 
 /// A bob, and a ball beside its lowest position.
 Scene bob_and_ball(Real step) {
-  Scene scene = make_scene(IntegratorId::velocity_verlet, step, {make_material("oak", 700)});
+  Scene scene = make_scene(IntegratorId::velocity_verlet, step);
+  scene.materials = {make_material("oak", 700)};
   scene.default_interface = {.stiffness = 4000, .damping = 0};
   BodyDescription bob;
   bob.name = "bob";
@@ -111,7 +112,8 @@ constexpr Eigen::Index kLinks = 6;
 /// A chain without springs, whose particles have the given velocities along x, and a mass that
 /// touches its end with a compression of 0.05 m.
 Scene chain_and_mass(Real step, const Eigen::VectorXd& velocities) {
-  Scene scene = make_scene(IntegratorId::velocity_verlet, step, {make_material("steel")});
+  Scene scene = make_scene(IntegratorId::velocity_verlet, step);
+  scene.materials = {make_material("steel")};
   scene.default_interface = {.stiffness = 500, .damping = 0};
   std::vector<Vec3> places;
   for (Eigen::Index i = 0; i < kLinks; ++i) places.emplace_back(0.5 * static_cast<Real>(i), 0, 0);

@@ -5,13 +5,14 @@
 
 #include "core/device/device_choice.h"
 #include "protocol/scene/scene_json.h"
-#include "tests/support/errors.h"
 #include "tests/support/scenes.h"
 
 // Weakly compressible liquids on an OpenCL device. The test machine computes them by PoCL.
 
-namespace vat::test::device_test {
+namespace vat::device_test {
 namespace {
+
+using namespace test;
 
 constexpr Real kSpacing = 0.02;
 
@@ -166,7 +167,8 @@ TEST(Device, HasTheSameBitsInAnyPortionsOfSteps) {
 
 TEST(Device, ContinuesAStateOfTheCpuAndTheReverse) {
   const Scene scene = make_column();
-  Simulation cpu = make_advanced(scene, 20);
+  Simulation cpu = make_simulation(scene);
+  cpu.advance(20);
   Simulation device = Simulation::from(cpu.snapshot());
   EXPECT_EQ(device.state_hash(), cpu.state_hash());
   ASSERT_TRUE(device.set_engine(make_device()).ok());
@@ -211,8 +213,14 @@ TEST(Device, LeavesAFailedStepToTheCpu) {
   };
   // The greatest speed is half a support radius per step, 20 m/s.
   const Case cases[] = {
-      {"too fast", 3, [](Scene& s) { s.bodies[0].velocity.z() = 30; }},
-      {"too fast after the last step", 1, [](Scene& s) { s.bodies[0].velocity.z() = -19.995; }},
+      {"too fast", 3,
+       [](Scene& s) {
+         s.bodies[0].velocity = {0, 0, 30};
+       }},
+      {"too fast after the last step", 1,
+       [](Scene& s) {
+         s.bodies[0].velocity = {0, 0, -19.995};
+       }},
       {"too fast after a step but the last", 2,
        [](Scene& s) {
          s.bodies[0].velocity = {0, 0, 25};
@@ -312,8 +320,10 @@ TEST(Device, RefusesFeaturesThatItLacks) {
 }
 
 TEST(Device, IsRefusedIfItDoesNotExist) {
-  EXPECT_EQ(errors_of(make_engine(parse_device("opencl:1000").value())), "not_available /device");
+  const auto engine = make_engine(parse_device("opencl:1000").value());
+  ASSERT_FALSE(engine.ok());
+  EXPECT_EQ(engine.errors().front().code, "not_available");
 }
 
 }  // namespace
-}  // namespace vat::test::device_test
+}  // namespace vat::device_test

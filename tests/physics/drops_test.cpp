@@ -8,8 +8,10 @@
 
 // Drops with both models of surface tension. LIQ-8 compares periods and pressures with theory.
 
-namespace vat::test::drops_test {
+namespace vat::drops_test {
 namespace {
+
+using namespace test;
 
 constexpr Real kRadius = 0.05;   // [m]
 constexpr Real kSigma = 0.5;     // [N/m]
@@ -55,20 +57,20 @@ void set_angle(Scene& scene, const char* other, Real angle) {
   scene.interfaces = {{{"water", other}, {}, {}, angle}};
 }
 
-/// The half of a disc above z = 0.
-BodyDescription make_half_drop() {
+/// The half of a disc above or below z = 0.
+BodyDescription make_half_drop(bool above) {
   std::vector<Vec3> points;
   for (Vec3 p : make_lattice(2 * kLayers, 1, 2 * kLayers, kSpacing)) {
-    if (p.norm() < kRadius && p.z() > 0) points.push_back(p);
+    if (p.norm() < kRadius && (p.z() > 0) == above) points.push_back(p);
   }
   return make_body("drop", BodyKind::liquid, "water",
                    make_particles(points, kDensity * kSpacing * kSpacing), kSpacing / 2);
 }
 
-/// A fixed slab below z = 0.
-BodyDescription make_slab() {
+/// A fixed slab below or above z = 0.
+BodyDescription make_slab(bool below) {
   BodyDescription slab{"slab", BodyKind::rigid, "stone",
-                       BoxShape{{0, 0, -0.025}, {0.4, kSpacing, 0.05}}, kSpacing};
+                       BoxShape{{0, 0, below ? -0.025 : 0.025}, {0.4, kSpacing, 0.05}}, kSpacing};
   slab.fixed = true;
   return slab;
 }
@@ -111,7 +113,7 @@ TEST(Drops, RestAtTheContactAngleOfAWall) {
       Scene scene = make_plane_scene(model);
       scene.vat = Vat{{-0.3, -1, 0}, {0.3, 1, 0.3}, false, {}};
       set_angle(scene, kVatMaterial, angle);
-      scene.bodies = {make_half_drop()};
+      scene.bodies = {make_half_drop(true)};
       EXPECT_NEAR(rested_angle(scene), angle, tolerance) << to_string(model);
     }
   }
@@ -121,9 +123,31 @@ TEST(Drops, RestAtTheContactAngleOfABody) {
   for (const Real angle : {45.0, 120.0}) {
     Scene scene = make_plane_scene(SurfaceModel::cohesion);
     set_angle(scene, "stone", angle);
-    scene.bodies = {make_half_drop(), make_slab()};
+    scene.bodies = {make_half_drop(true), make_slab(true)};
     EXPECT_NEAR(rested_angle(scene), angle, 9);
   }
+}
+
+/// Returns whether a drop below a body falls off.
+bool falls(Real angle, Real gravity) {
+  Scene scene = make_plane_scene(SurfaceModel::cohesion);
+  scene.gravity = {0, 0, -gravity};
+  set_angle(scene, "stone", angle);
+  scene.bodies = {make_half_drop(false), make_slab(false)};
+  Simulation simulation = make_simulation(scene);
+  for (int n = 0; n < 20; ++n) {
+    advance_for(simulation, 1);
+    if (simulation.diagnostics().bodies[0].center_of_mass.z() < -4 * kRadius) return true;
+  }
+  return false;
+}
+
+// The drop weighs rho g pi R^2 / 2. At most 2 sigma hold it.
+TEST(Drops, HangUnderABodyThatTheyWet) {
+  const Real greatest = 4 * kSigma / (kDensity * std::numbers::pi * kRadius * kRadius);
+  EXPECT_FALSE(falls(45, 0.5 * greatest));
+  EXPECT_TRUE(falls(45, 3 * greatest));
+  EXPECT_TRUE(falls(135, 1.5 * greatest));
 }
 
 /// A drop that translates and rotates.
@@ -231,7 +255,7 @@ TEST(Drops, GiveTheSameBitsForAnyThreadsAndFromASnapshot) {
     Scene scene = is_plane ? make_plane_scene(model) : make_wet_scene(model, 3, 6, 0.1);
     scene.bodies = {
         make_drop("drop", SphereShape{{0, 0, 0.055}, kRadius}, is_plane ? kSpacing : kRadius / 6)};
-    if (is_plane) scene.bodies.push_back(make_slab());
+    if (is_plane) scene.bodies.push_back(make_slab(true));
     scene.gravity = {0, 0, -1};
     scene.vat = Vat{{-0.3, -0.1, is_plane ? -0.05 : 0}, {0.3, 0.1, 1}, false, {}};
     scene.periodic = Periodicity{{-0.3, -0.1, 0}, {0.3, 0.1, 1}, {true, !is_plane, false}};
@@ -243,4 +267,4 @@ TEST(Drops, GiveTheSameBitsForAnyThreadsAndFromASnapshot) {
 }
 
 }  // namespace
-}  // namespace vat::test::drops_test
+}  // namespace vat::drops_test

@@ -2,13 +2,16 @@
 
 #include <cmath>
 
-#include "tests/support/scenes.h"
+#include "tests/support/mixed_scenes.h"
+#include "tests/support/same_bits.h"
 
 // Friction during motion with every integrator and step control. RIG-7 compares it with closed
 // forms.
 
-namespace vat::test::friction_test {
+namespace vat::friction_test {
 namespace {
+
+using namespace test;
 
 constexpr Real kFriction = 0.3;
 constexpr Real kGravity = 9.81;   // [m/s^2]
@@ -75,5 +78,11 @@ TEST(Friction, BetweenBodiesIsTheSameWithEveryStepControl) {
   }
 }
 
+TEST(Friction, GivesTheSameBitsForAnyThreadsAndFromASnapshot) {
+  Scene scene = make_crowd(IntegratorId::velocity_verlet, 1e-3);
+  scene.default_interface = {5000, 2, 0.5};
+  expect_same_bits(scene, 20, 10);
+}
+
 }  // namespace
-}  // namespace vat::test::friction_test
+}  // namespace vat::friction_test

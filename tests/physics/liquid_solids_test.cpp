@@ -6,8 +6,10 @@
 
 // Solids in a weakly compressible liquid, near walls.
 
-namespace vat::test::liquid_solids_test {
+namespace vat::liquid_solids_test {
 namespace {
+
+using namespace test;
 
 constexpr Real kSpacing = 0.02;
 constexpr Real kHalf = 0.16;  // half of the tank's length
@@ -65,4 +67,4 @@ TEST(LiquidSolids, MoveAtAWallAsBesideTheirMirrorImages) {
 }
 
 }  // namespace
-}  // namespace vat::test::liquid_solids_test
+}  // namespace vat::liquid_solids_test

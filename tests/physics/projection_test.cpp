@@ -3,11 +3,14 @@
 #include <cmath>
 
 #include "tests/support/mixed_scenes.h"
+#include "tests/support/same_bits.h"
 
 // Projection contacts in steps of 1/60 s and longer. RIG-9 compares them with closed forms.
 
-namespace vat::test::projection_test {
+namespace vat::projection_test {
 namespace {
+
+using namespace test;
 
 constexpr Real kFrame = 1.0 / 60;
 constexpr Real kRadius = 0.05;  // [m]
@@ -79,7 +82,8 @@ TEST(Projection, NeverGainsEnergyInACollision) {
 }
 
 TEST(Projection, SeparatesInitialOverlapsWithoutVelocity) {
-  Scene scene = make_scene(IntegratorId::velocity_verlet, kFrame, {make_material("steel")});
+  Scene scene = make_scene(IntegratorId::velocity_verlet, kFrame);
+  scene.materials = {make_material("steel")};
   scene.default_interface = projection();
   scene.bodies = {make_plate("a", 0), make_plate("b", 3.1 * kRadius)};
   Simulation simulation = make_simulation(scene);
@@ -98,8 +102,15 @@ TEST(Projection, CarriesBodiesOnASlidingVat) {
   EXPECT_NEAR(position_of(simulation, 0).x() + 3 * kRadius, 0.4, 1e-5);
 }
 
+TEST(Projection, GivesTheSameBitsForAnyThreadsAndFromASnapshot) {
+  Scene scene = make_crowd(IntegratorId::velocity_verlet, 4e-3);
+  scene.default_interface = projection(0.4, 0.3);
+  expect_same_bits(scene, 20, 10);
+}
+
 TEST(Projection, OfTooManyContactsFailsTheStep) {
-  Scene scene = make_scene(IntegratorId::velocity_verlet, kFrame, {make_material("steel")});
+  Scene scene = make_scene(IntegratorId::velocity_verlet, kFrame);
+  scene.materials = {make_material("steel")};
   scene.default_interface = projection();
   std::vector<Vec3> points;
   for (int i = 0; i < 750; ++i) points.emplace_back(1e-5 * i, 0, 0);  // 562 500 pairs
@@ -142,4 +153,4 @@ TEST(Projection, GoesWithDashpotsThatStepsDoNotResolve) {
 }
 
 }  // namespace
-}  // namespace vat::test::projection_test
+}  // namespace vat::projection_test

@@ -3,17 +3,21 @@
 #include <cmath>
 #include <vector>
 
+#include "core/model/compile.h"
+#include "core/state/controls.h"
 #include "core/stepping/local_step.h"
-#include "tests/support/force_probe.h"
+#include "core/stepping/step_plan.h"
+#include "core/stepping/workspace.h"
 #include "tests/support/mixed_scenes.h"
 #include "tests/support/momentum_watch.h"
-#include "tests/support/name_of.h"
 #include "tests/support/same_bits.h"
 
 // Local steps with coupled liquids: solids take sub-steps within a step of the liquid.
 
-namespace vat::test::sub_steps_test {
+namespace vat::sub_steps_test {
 namespace {
+
+using namespace test;
 
 constexpr Index kJelly = 2;  // body of make_wet_mixture()
 
@@ -61,7 +65,7 @@ TEST_P(SubSteps, OfAStiffBodyEvaluateTheLiquidsOncePerStep) {
 
 INSTANTIATE_TEST_SUITE_P(Solvers, SubSteps,
                          testing::Values(PressureSolver::tait, PressureSolver::incompressible),
-                         NameOf());
+                         [](const auto& one) { return std::string(to_string(one.param)); });
 
 // With one level, the steps are those of velocity Verlet, except for rounding.
 TEST(SubStepsOfTait, OfOneLevelAreVelocityVerlet) {
@@ -114,7 +118,7 @@ Scene make_cube_in_vat() {
 /// Returns all positions after 0.02 s of `steps` steps. The cube takes `parts` parts of a step.
 std::vector<Vec3> run_cube(int steps, int parts) {
   const Real dt = 0.02 / steps;
-  const auto model = compile_scene(make_cube_in_vat());
+  const auto model = compile(make_cube_in_vat(), {1, 2}, {nullptr, nullptr});
   State state = initial_state(*model);
   const Controls controls;
   Workspace work;
@@ -154,4 +158,4 @@ TEST(SubStepsOfTait, AreOfOrderTwoInTheStepOfTheLiquid) {
 }
 
 }  // namespace
-}  // namespace vat::test::sub_steps_test
+}  // namespace vat::sub_steps_test

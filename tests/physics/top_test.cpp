@@ -8,8 +8,10 @@
 // Free rotation of bodies with equal and very different moments. RIG-1 to RIG-3 compare it with
 // theory.
 
-namespace vat::test::top_test {
+namespace vat::top_test {
 namespace {
+
+using namespace test;
 
 /// Six points of 0.5 kg on the axes. Their radius of 1e-6 adds 1e-12 to the moments.
 Scene make_top(Real step, const Vec3& angular_velocity, const Vec3& inertia) {
@@ -21,7 +23,8 @@ Scene make_top(Real step, const Vec3& angular_velocity, const Vec3& inertia) {
     points.push_back(std::sqrt(square[axis]) * Vec3::Unit(axis));
     points.push_back(-points.back());
   }
-  Scene scene = make_scene(IntegratorId::velocity_verlet, step, {make_material("steel")});
+  Scene scene = make_scene(IntegratorId::velocity_verlet, step);
+  scene.materials = {make_material("steel")};
   scene.bodies = {make_body("top", BodyKind::rigid, "steel", make_particles(points, 0.5), 1e-6)};
   scene.bodies[0].angular_velocity = angular_velocity;
   return scene;
@@ -64,7 +67,8 @@ TEST(Top, SymmetricTopIsExactWithAnyStep) {
 Scene make_thin_rod(Real arm, const Vec3& angular_velocity) {
   std::vector<Vec3> points = make_lattice(11, 1, 1, 0.1);
   if (arm > 0) points.push_back({0, arm, 0});
-  Scene scene = make_scene(IntegratorId::velocity_verlet, 2e-3, {make_material("steel")});
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 2e-3);
+  scene.materials = {make_material("steel")};
   scene.bodies = {make_body("rod", BodyKind::rigid, "steel", make_particles(points, 0.1), 1e-3)};
   scene.bodies[0].angular_velocity = angular_velocity;
   return scene;
@@ -91,4 +95,4 @@ TEST(Top, ThinRodKeepsItsEnergy) {
 }
 
 }  // namespace
-}  // namespace vat::test::top_test
+}  // namespace vat::top_test

@@ -8,8 +8,10 @@
 
 // Liquids that fill their world. Their particles move with a transport velocity.
 
-namespace vat::test::transport_test {
+namespace vat::transport_test {
 namespace {
+
+using namespace test;
 
 /// u = -U cos(2 pi x) sin(2 pi z), w = U sin(2 pi x) cos(2 pi z) with U = 1 m/s in the plane.
 VectorField vortices() {
@@ -84,7 +86,12 @@ TEST(Transport, IsOfLiquidsThatFillTheirWorld) {
   EXPECT_THAT(stages_of(scene), Contains("transport_velocity"));
   scene.bodies[0].shape = BoxShape{{0.5, 0, 0.45}, {1, 1, 0.9}};
   EXPECT_THAT(stages_of(scene), Not(Contains("transport_velocity")));
+  scene.periodic.reset();
+  scene.vat = Vat{{0, -1, 0}, {1, 1, 0.9}, true, {}};
+  EXPECT_THAT(stages_of(scene), Contains("transport_velocity"));
+  scene.vat->lid = false;
+  EXPECT_THAT(stages_of(scene), Not(Contains("transport_velocity")));
 }
 
 }  // namespace
-}  // namespace vat::test::transport_test
+}  // namespace vat::transport_test

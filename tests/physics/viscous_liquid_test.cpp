@@ -4,15 +4,16 @@
 #include <numbers>
 
 #include "tests/support/momentum_watch.h"
-#include "tests/support/name_of.h"
 #include "tests/support/same_bits.h"
 #include "tests/support/scenes.h"
 
 // Solids and walls in a liquid whose viscosity the steps do not resolve. LIQ-7 and LIQ-19 compare
 // with theory.
 
-namespace vat::test::viscous_liquid_test {
+namespace vat::viscous_liquid_test {
 namespace {
+
+using namespace test;
 
 constexpr Real kStep = 1e-3;
 constexpr Real kSpacing = 0.1;
@@ -120,7 +121,7 @@ TEST_P(ThickLiquid, SinksOntoASlipFloorAndStaysAboveIt) {
 
 INSTANTIATE_TEST_SUITE_P(Solvers, ThickLiquid,
                          testing::Values(PressureSolver::tait, PressureSolver::incompressible),
-                         NameOf());
+                         [](const auto& solver) { return std::string(to_string(solver.param)); });
 
 }  // namespace
-}  // namespace vat::test::viscous_liquid_test
+}  // namespace vat::viscous_liquid_test
