@@ -3,8 +3,6 @@
 #include <sys/wait.h>
 
 #include <csignal>
-#include <stdexcept>
-#include <utility>
 
 #include "tests/support/pool_scene.h"
 #include "tests/support/wait.h"
@@ -23,25 +21,17 @@ Nodes::Nodes(std::size_t count, std::vector<std::string> options) : options_(std
 void Nodes::start(const std::string& node) {
   std::string servers;
   for (const std::string& url : nats_.urls()) servers += (servers.empty() ? "" : ",") + url;
-  std::vector<std::string> arguments{"serve",
-                                     "--cluster",
-                                     servers,
-                                     "--node",
-                                     node,
-                                     "--public-url",
-                                     url(node),
-                                     "--port",
-                                     std::to_string(nodes_.at(node).port),
-                                     "--data",
-                                     folder_.file(node),
-                                     "--scenes",
-                                     folder_.file("scenes"),
-                                     "--scene",
-                                     "pool",
-                                     "--threads",
-                                     "2",
-                                     "--log-level",
-                                     "warn"};
+  const std::map<std::string, std::string> values{{"--cluster", servers},
+                                                  {"--node", node},
+                                                  {"--public-url", url(node)},
+                                                  {"--port", std::to_string(nodes_.at(node).port)},
+                                                  {"--data", folder_.file(node)},
+                                                  {"--scenes", folder_.file("scenes")},
+                                                  {"--scene", "pool"},
+                                                  {"--threads", "2"},
+                                                  {"--log-level", "warn"}};
+  std::vector<std::string> arguments{"serve"};
+  for (const auto& [option, value] : values) arguments.insert(arguments.end(), {option, value});
   arguments.insert(arguments.end(), options_.begin(), options_.end());
   nodes_.at(node).process = nullptr;
   nodes_.at(node).process = std::make_unique<script::ServerProcess>(VAT_PROGRAM, arguments);
