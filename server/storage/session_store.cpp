@@ -262,9 +262,4 @@ void SessionStore::reach(std::uint64_t session, std::uint64_t position) {
   write_reached_.bind(0, position).bind(1, session).run();
 }
 
-void SessionStore::limit_pages(std::size_t pages) {
-  const std::lock_guard lock(mutex_);
-  database_.number("PRAGMA max_page_count = " + std::to_string(pages));
-}
-
 }  // namespace vat

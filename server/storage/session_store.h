@@ -82,8 +82,6 @@ class SessionStore {
 
   /// See Database::move_log(). Uses a separate connection. Must be called by one thread at a time.
   std::size_t move_log(bool wait) { return mover_.move_log(wait); }
-  /// Limits the database size, to simulate a full disk in tests.
-  void limit_pages(std::size_t pages);
 
  private:
   // The caller must hold the mutex for these functions.

@@ -1,12 +1,10 @@
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <csignal>
 #include <future>
 #include <iostream>
-#include <set>
-#include <thread>
 
+#include "protocol/client/client.h"
 #include "server/cluster/cluster_streams.h"
 #include "server/cluster/lease.h"
 #include "server/cluster/log_records.h"
@@ -84,7 +82,7 @@ TEST(Cluster, AKilledNodeLosesNothingThatWasAnswered) {
   for (Told& told : lives) {
     asked = nodes.others(owner).front();
     load_until(nodes, owner, 200, told, [&] { nodes.process(owner).kill(); });
-    EXPECT_THAT(told.faults(), testing::IsEmpty());
+    EXPECT_THAT(told.faults, testing::IsEmpty());
     const auto next = nodes.join(kSession, asked);
     EXPECT_NE(next.node, owner);
     nodes.start(owner);
@@ -103,12 +101,12 @@ TEST(Cluster, AKilledNodeLosesNothingThatWasAnswered) {
   std::size_t commands = 0;
   std::size_t states = 0;
   for (std::size_t life = 0; life < lives.size(); ++life) {
-    for (const Answered& answered : lives[life].answered()) {
+    for (const Answered& answered : lives[life].answered) {
       EXPECT_TRUE(logged.contains({answered.method, answered.params}))
           << answered.method << " " << answered.params << " is lost";
       ++commands;
     }
-    for (const Seen& seen : lives[life].seen()) {
+    for (const Seen& seen : lives[life].seen) {
       if (seen.position > log.ends[life]) continue;
       ++states;
       const auto at = hashes.find(seen.position);
@@ -245,6 +243,28 @@ TEST(Cluster, AProcessWhoseNameAnotherProcessTakesServesNoSession) {
     }
   }));
   EXPECT_TRUE(wait_until([&] { return !bucket.get("a"); }));  // it is not renewed
+}
+
+TEST(Cluster, AClientFollowsItsSessionWhenItsNodeFails) {
+  Nodes nodes(2);
+  const std::string first = nodes.owner_of(kSession, "a");
+  std::atomic<int> frames = 0;
+  std::atomic<int> resumed = 0;
+  client::Handlers handlers;
+  handlers.on_frame = [&](const client::Frame&) { ++frames; };
+  handlers.on_rejoined = [&](const auto& joined) { resumed += joined.resumed; };
+  client::Client client(nodes.url(nodes.others(first).front()), {}, handlers);
+  client::SessionJoin::Params join;
+  join.session = kSession;
+  EXPECT_EQ(client.call<client::SessionJoin>(join).get().session, kSession);
+  client.call<client::FramesSubscribe>({}).get();
+  ASSERT_TRUE(wait_until([&] { return frames > 0; }));
+
+  nodes.process(first).kill();
+  ASSERT_TRUE(wait_until([&] { return resumed == 1; }));
+  frames = 0;
+  ASSERT_TRUE(wait_until([&] { return frames > 0; }));
+  EXPECT_EQ(client.call<client::SessionJoin>(join).get().session, kSession) << "at its new node";
 }
 
 TEST(Cluster, EachNodeListsCreatesMovesAndClosesSessions) {

@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include <csignal>
-#include <stdexcept>
 #include <utility>
 
 #include "tests/support/wait.h"

@@ -120,14 +120,6 @@ TEST_F(Nats, OnlyOneOfTwoWritersAppendsToASubject) {
   EXPECT_EQ(stream.find(third)->data, "d");
 }
 
-TEST_F(Nats, ABinaryMessageIsReadAsItWasWritten) {
-  Stream stream(connection, {"log", "log.*", milliseconds(0), 0, {}});
-  std::string bytes(500'000, '\0');
-  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(i * 7);
-  stream.append("log.1", bytes, 0);
-  EXPECT_TRUE(stream.last("log.1")->data == bytes);
-}
-
 TEST_F(Nats, ARequestIsAnsweredByTheSubscriber) {
   const auto subscription = connection.subscribe("echo", [&](const NatsMessage& request) {
     connection.publish(request.reply_to, request.data);

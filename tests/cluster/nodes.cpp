@@ -3,8 +3,6 @@
 #include <sys/wait.h>
 
 #include <csignal>
-#include <stdexcept>
-#include <utility>
 
 #include "tests/support/pool_scene.h"
 #include "tests/support/wait.h"
@@ -24,28 +22,20 @@ Nodes::Nodes(std::size_t count, std::vector<std::string> options,
 
 void Nodes::start(const std::string& node) {
   const auto threads = threads_.find(node);
+  const std::size_t count = threads == threads_.end() ? 2 : threads->second;
   std::string servers;
   for (const std::string& url : nats_.urls()) servers += (servers.empty() ? "" : ",") + url;
-  std::vector<std::string> arguments{
-      "serve",
-      "--cluster",
-      servers,
-      "--node",
-      node,
-      "--public-url",
-      url(node),
-      "--port",
-      std::to_string(nodes_.at(node).port),
-      "--data",
-      folder_.file(node),
-      "--scenes",
-      folder_.file("scenes"),
-      "--scene",
-      "pool",
-      "--threads",
-      std::to_string(threads == threads_.end() ? 2 : threads->second),
-      "--log-level",
-      "warn"};
+  const std::map<std::string, std::string> values{{"--cluster", servers},
+                                                  {"--node", node},
+                                                  {"--public-url", url(node)},
+                                                  {"--port", std::to_string(nodes_.at(node).port)},
+                                                  {"--data", folder_.file(node)},
+                                                  {"--scenes", folder_.file("scenes")},
+                                                  {"--scene", "pool"},
+                                                  {"--threads", std::to_string(count)},
+                                                  {"--log-level", "warn"}};
+  std::vector<std::string> arguments{"serve"};
+  for (const auto& [option, value] : values) arguments.insert(arguments.end(), {option, value});
   arguments.insert(arguments.end(), options_.begin(), options_.end());
   nodes_.at(node).process = nullptr;
   nodes_.at(node).process = std::make_unique<script::ServerProcess>(VAT_PROGRAM, arguments);

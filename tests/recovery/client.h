@@ -3,9 +3,7 @@
 #include <atomic>
 #include <chrono>
 #include <map>
-#include <memory>
 #include <stdexcept>
-#include <string>
 #include <utility>
 
 #include "protocol/client/connection/connection.h"

@@ -1,54 +1,13 @@
-// Unusable data folders, and disks that become full.
+// A disk that becomes full.
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-
-#include <cstdio>
 
 #include "server/script/server_process.h"
-#include "server/storage/data_folder.h"
 #include "tests/recovery/client.h"
 #include "tests/support/temporary_folder.h"
 
 namespace vat::test::disk_test {
 namespace {
-
-using testing::HasSubstr;
-
-struct Ended {
-  int status = -1;
-  std::string output;
-};
-
-/// Runs a server that must fail to start.
-Ended run_server(const std::string& data) {
-  const std::string command =
-      "'" VAT_PROGRAM "' serve --port 0 --scene rigid-stack --data '" + data + "' 2>&1";
-  Ended ended;
-  std::FILE* pipe = popen(command.c_str(), "r");
-  char line[512];
-  while (std::fgets(line, sizeof line, pipe) != nullptr) ended.output += line;
-  ended.status = WEXITSTATUS(pclose(pipe));
-  return ended;
-}
-
-TEST(Disk, DataThatCannotBeUsedEndsTheServerAtItsStart) {
-  const TemporaryFolder folder;
-  folder.write("garbage/vat.db", std::string(5000, 'x'));
-  const Ended garbage = run_server(folder.file("garbage"));
-  EXPECT_EQ(garbage.status, 1);
-  EXPECT_THAT(garbage.output, HasSubstr("garbage/vat.db: file is not a database"));
-
-  const DataFolder used(folder.file("used"));
-  const Ended locked = run_server(folder.file("used"));
-  EXPECT_EQ(locked.status, 1);
-  EXPECT_THAT(locked.output, HasSubstr("used is used by another server"));
-
-  const Ended read_only = run_server("/proc/vat");  // not writable, even for root
-  EXPECT_EQ(read_only.status, 1);
-  EXPECT_THAT(read_only.output, HasSubstr("/proc/vat cannot be written"));
-}
 
 TEST(Disk, OneThatFillsUpRefusesCommandsAndLosesNothing) {
   const TemporaryFolder folder;

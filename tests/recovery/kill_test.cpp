@@ -1,12 +1,7 @@
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <iostream>
-#include <map>
 #include <random>
-#include <set>
-#include <thread>
 
 #include "server/script/server_process.h"
 #include "tests/recovery/load.h"
@@ -83,7 +78,7 @@ TEST_F(Kill, AtAnyMomentLosesNothingThatWasAnswered) {
   for (int life = 0; life < kill_count(); ++life) {
     Told told;
     live(life, told);
-    EXPECT_THAT(told.faults(), testing::IsEmpty());
+    EXPECT_THAT(told.faults, testing::IsEmpty());
     std::map<std::string, StoredPast> past = read_past(data);
     ASSERT_EQ(past.size(), names.size());
     std::map<std::string, std::multiset<Command>> logged;
@@ -93,13 +88,13 @@ TEST_F(Kill, AtAnyMomentLosesNothingThatWasAnswered) {
         if (!entry.refused) logged[session].emplace(entry.method, entry.params);
       }
     }
-    for (const Answered& answered : told.answered()) {
+    for (const Answered& answered : told.answered) {
       EXPECT_TRUE(logged[answered.session].contains({answered.method, answered.params}))
           << answered.method << " " << answered.params << " is lost from " << answered.session;
     }
-    commands += told.answered().size();
+    commands += told.answered.size();
     // States seen after the recovered position are no longer part of the history.
-    for (const Seen& state : told.seen()) {
+    for (const Seen& state : told.seen) {
       if (state.position <= past.at(state.session).position) seen.push_back(state);
     }
   }

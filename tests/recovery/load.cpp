@@ -1,9 +1,5 @@
 #include "tests/recovery/load.h"
 
-#include <stdexcept>
-#include <utility>
-
-#include "protocol/json/json_reader.h"
 #include "tests/support/wait.h"
 
 namespace vat::test {
@@ -97,33 +93,21 @@ class Load {
 
 }  // namespace
 
-void Told::add(Seen seen) {
+void Told::add(Seen one) {
   const std::lock_guard lock(mutex_);
-  seen_.push_back(std::move(seen));
+  seen.push_back(std::move(one));
 }
-void Told::add(Answered answered) {
+void Told::add(Answered one) {
   const std::lock_guard lock(mutex_);
-  answered_.push_back(std::move(answered));
+  answered.push_back(std::move(one));
 }
 void Told::add_fault(const std::string& fault) {
   const std::lock_guard lock(mutex_);
-  faults_.push_back(fault);
-}
-std::vector<Seen> Told::seen() const {
-  const std::lock_guard lock(mutex_);
-  return seen_;
+  faults.push_back(fault);
 }
 std::size_t Told::answer_count() const {
   const std::lock_guard lock(mutex_);
-  return seen_.size() + answered_.size();
-}
-std::vector<Answered> Told::answered() const {
-  const std::lock_guard lock(mutex_);
-  return answered_;
-}
-std::vector<std::string> Told::faults() const {
-  const std::lock_guard lock(mutex_);
-  return faults_;
+  return seen.size() + answered.size();
 }
 
 WaitingClient connect(std::uint16_t port) {

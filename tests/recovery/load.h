@@ -1,9 +1,6 @@
 #pragma once
 
-#include <atomic>
 #include <cstdint>
-#include <mutex>
-#include <string>
 #include <vector>
 
 #include "tests/recovery/client.h"
@@ -24,22 +21,21 @@ struct Answered {
   std::string params;  ///< as in the log
 };
 
-/// Results that clients received from one server process.
+/// Results that clients received from one server process. The lists are complete after the clients
+/// have ended.
 class Told {
  public:
-  void add(Seen seen);
-  void add(Answered answered);
+  void add(Seen one);
+  void add(Answered one);
   void add_fault(const std::string& fault);
-  std::vector<Seen> seen() const;
-  std::vector<Answered> answered() const;
   std::size_t answer_count() const;  ///< of both kinds
-  std::vector<std::string> faults() const;
+
+  std::vector<Seen> seen;
+  std::vector<Answered> answered;
+  std::vector<std::string> faults;
 
  private:
   mutable std::mutex mutex_;
-  std::vector<Seen> seen_;
-  std::vector<Answered> answered_;
-  std::vector<std::string> faults_;
 };
 
 /// Connects. Throws Gone if the connection fails.

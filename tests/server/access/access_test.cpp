@@ -2,14 +2,12 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <set>
 
 #include "server/access/access.h"
-#include "server/access/token.h"
-#include "server/cli/serve/serve_access.h"
+#include "server/access/signed_token.h"
+#include "server/messages/limits.h"
 #include "tests/server/fixture/access_fixture.h"
-#include "tests/support/temporary_folder.h"
 
 namespace vat::test::access_test {
 namespace {
@@ -25,34 +23,14 @@ class DelayedAccess : public AccessTest {
 };
 class OpenAccess : public SessionTest {};
 
-TEST_F(OpenAccess, LetsEverybodyInAsAController) {
-  const auto guest = connect();
-  EXPECT_EQ(guest->result("server.info").at("access"), "open");
-  EXPECT_EQ(guest->result("session.join").at("role"), "controller");
-}
-
 TEST_F(OpenAccess, OnlyAnAdminOwnsTheFirstSession) {
   EXPECT_EQ(client->error("session.close", {{"session", "s1"}}).at("code"), 1006);
   EXPECT_EQ(client->error("session.configure").at("code"), 1006);
-  const auto admin = connect_admin();
-  EXPECT_EQ(admin->result("session.join").at("role"), "admin");
-  admin->result("session.configure", {{"default_role", "viewer"}});
-  EXPECT_EQ(connect()->result("session.join").at("role"), "viewer");
-  admin->result("session.close", {{"session", "s1"}});
-}
-
-TEST_F(OpenAccess, TheCreatorOwnsASession) {
-  const std::string own =
-      client->result("session.create", {{"name", "own"}, {"scene", "mixed"}}).at("session");
-  const auto guest = join(own);
-  EXPECT_EQ(guest->error("session.close", {{"session", own}}).at("data").at("role"), "controller");
-  EXPECT_EQ(client->result("session.join", {{"session", own}}).at("role"), "owner");
-  client->result("session.close", {{"session", own}});
+  connect_admin()->result("session.close", {{"session", "s1"}});
 }
 
 TEST_F(OpenAccess, TheCreatorMayCloseASessionFromOutside) {
-  const std::string own =
-      client->result("session.create", {{"name", "own"}, {"scene", "mixed"}}).at("session");
+  const std::string own = client->create_session();
   EXPECT_EQ(connect()->error("session.close", {{"session", own}}).at("code"), 1006);
   client->result("session.close", {{"session", own}});
 }
@@ -114,14 +92,6 @@ TEST_F(Access, OwaspATicketIsGoodOnce) {
   EXPECT_EQ(connect()->error("access.enter", {{"token", token}}).at("code"), 1007);
 }
 
-TEST_F(Access, ATicketOfTheServerGivesItsRoleInEverySession) {
-  const auto guest = enter(ticket({{"role", "controller"}}));
-  EXPECT_EQ(guest->result("session.join", {{"session", "s1"}}).at("role"), "controller");
-  const auto viewer = enter(ticket({{"role", "viewer"}}));
-  EXPECT_EQ(viewer->result("session.join").at("role"), "viewer");
-  EXPECT_EQ(viewer->error("session.create", {{"name", "n"}, {"scene", "mixed"}}).at("code"), 1006);
-}
-
 TEST_F(Access, OnlyAnAdminGivesTicketsForAll) {
   const auto owner = this->owner();
   EXPECT_EQ(owner->error("access.ticket", {{"role", "viewer"}}).at("data").at("least_role"),
@@ -147,17 +117,6 @@ TEST_F(Access, AnInvitationOpensOneSessionAndNoOther) {
   const Json list = guest->result("session.list").at("sessions");
   ASSERT_EQ(list.size(), 1u);
   EXPECT_EQ(list.at(0).at("session"), own);
-}
-
-TEST_F(Access, AnInvitationIsValidForItsNumberOfUses) {
-  const auto owner = this->owner();
-  const std::string twice =
-      owner->result("session.invite", {{"role", "viewer"}, {"uses", 2}}).at("token");
-  enter(twice);
-  enter(twice);
-  EXPECT_EQ(connect()->error("access.enter", {{"token", twice}}).at("code"), 1007);
-  const std::string any = owner->result("session.invite", {{"role", "viewer"}}).at("token");
-  for (int i = 0; i < 5; ++i) enter(any);
 }
 
 TEST_F(Access, InvitationsEndWithTheirSession) {
@@ -216,18 +175,12 @@ TEST(AccessTokens, AreBoundedAndOldOnesMakeRoom) {
   EXPECT_TRUE(issue(10s));
 }
 
-std::string to_hex(const TokenHash& hash) {
-  std::string text;
-  for (const std::uint8_t byte : hash) {
-    for (const int digit : {byte >> 4, byte & 15}) text += "0123456789abcdef"[digit];
-  }
-  return text;
-}
-
 // FIPS 180-2, appendix B.1.
 TEST(Token, IsHashedBySha256) {
-  EXPECT_EQ(to_hex(hash_of_token("abc")),
-            "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  const TokenHash expected{0xba, 0x78, 0x16, 0xbf, 0x8f, 0x01, 0xcf, 0xea, 0x41, 0x41, 0x40,
+                           0xde, 0x5d, 0xae, 0x22, 0x23, 0xb0, 0x03, 0x61, 0xa3, 0x96, 0x17,
+                           0x7a, 0x9c, 0xb4, 0x10, 0xff, 0x61, 0xf2, 0x00, 0x15, 0xad};
+  EXPECT_EQ(hash_of_token("abc"), expected);
 }
 
 TEST(Token, HashesAreTheSameOrNot) {
@@ -256,89 +209,89 @@ TEST(Token, IsOfRandomCharactersAndNeverTheSame) {
   EXPECT_EQ(seen[21].size(), 4u);
 }
 
-// Access by the options of `vat serve`.
+// Access to the metrics by the header Authorization.
 
-constexpr const char* kVariable = "VAT_ADMIN_TOKEN";
-constexpr const char* kToken = "0123456789abcdef";  // the minimum length
+constexpr const char* kMetricsToken = "the token of the metrics";
 
-class ServeAccessTest : public testing::Test {
- protected:
-  ServeAccessTest() { unsetenv(kVariable); }
-  void TearDown() override { unsetenv(kVariable); }
-
-  ServeAccess made() {
-    const Result<ServeAccess> access = serve_access(settings);
-    EXPECT_TRUE(access.ok());
-    return access ? access.value() : ServeAccess{};
-  }
-  std::string refusal() {
-    const Result<ServeAccess> access = serve_access(settings);
-    EXPECT_FALSE(access.ok());
-    return access ? "" : access.errors().front().code;
-  }
-
-  const TemporaryFolder folder;
-  ServeSettings settings;
-};
-
-TEST_F(ServeAccessTest, IsOpenOnlyIfAllClientsAreOnThisMachine) {
-  for (const char* host : {"127.0.0.1", "127.3.2.1", "::1"}) {
-    settings.host = host;
-    EXPECT_EQ(made().settings.mode, AccessMode::open) << host;
-  }
-  for (const char* host : {"0.0.0.0", "::", "10.0.0.1"}) {
-    settings.host = host;
-    EXPECT_EQ(made().settings.mode, AccessMode::token) << host;
-  }
-  settings.host = "127.0.0.1";
-  settings.public_name = {"vat.example"};
-  EXPECT_EQ(made().settings.mode, AccessMode::token);
-  settings.public_name.clear();
-  settings.trusted_proxy = {"127.0.0.1"};
-  EXPECT_EQ(made().settings.mode, AccessMode::token);
-  settings.access = "open";
-  EXPECT_EQ(made().settings.mode, AccessMode::open);
-  settings.host = "127.0.0.1";
-  settings.access = "token";
-  EXPECT_EQ(made().settings.mode, AccessMode::token);
+AccessSettings with_tokens(AccessMode mode, bool has_metrics_token) {
+  AccessSettings settings;
+  settings.mode = mode;
+  settings.admin = hash_of_token(kAdminToken);
+  if (has_metrics_token) settings.metrics = hash_of_token(kMetricsToken);
+  return settings;
 }
 
-TEST_F(ServeAccessTest, MakesANeededAdminTokenIfNoneIsGiven) {
-  EXPECT_TRUE(made().made_token.empty());
-  EXPECT_FALSE(made().settings.admin);
-  settings.access = "token";
-  const ServeAccess first = made();
-  EXPECT_EQ(first.settings.admin, hash_of_token(first.made_token));
-  EXPECT_NE(first.made_token, made().made_token);
-  setenv(kVariable, kToken, 1);
-  EXPECT_TRUE(made().made_token.empty());
-  EXPECT_EQ(made().settings.admin, hash_of_token(kToken));
-  settings.access = "open";
-  EXPECT_EQ(made().settings.admin, hash_of_token(kToken))
-      << "the admin token also works in open mode";
+TEST(MetricsAccess, NeedsAToken) {
+  const std::string admin(kAdminToken);
+  const std::string metrics = kMetricsToken;
+  const AccessSettings settings = with_tokens(AccessMode::token, true);
+  for (const std::string& good : {"Bearer " + metrics, "bearer " + metrics, "Bearer " + admin}) {
+    EXPECT_TRUE(may_read_metrics(settings, good)) << good;
+  }
+  for (const std::string& bad :
+       {std::string(), std::string("Bearer"), std::string("Bearer "), std::string("Bearer x"),
+        metrics, "Basic " + metrics, "Bearer " + metrics + "x", "Bearer  " + metrics,
+        "Bearer " + metrics.substr(1)}) {
+    EXPECT_FALSE(may_read_metrics(settings, bad)) << bad;
+  }
+  EXPECT_FALSE(may_read_metrics(with_tokens(AccessMode::token, false), "Bearer " + metrics));
+  EXPECT_TRUE(may_read_metrics(with_tokens(AccessMode::token, false), "Bearer " + admin));
 }
 
-TEST_F(ServeAccessTest, TakesTheFirstLineOfAFileBeforeTheVariable) {
-  setenv(kVariable, "another token of the admin", 1);
-  folder.write("token", std::string(kToken) + "\nnot this\n");
-  settings.admin_token_file = folder.file("token");
-  EXPECT_EQ(made().settings.admin, hash_of_token(kToken));
+TEST(MetricsAccess, IsOpenWithTheServerUnlessThereIsAToken) {
+  EXPECT_TRUE(may_read_metrics(with_tokens(AccessMode::open, false), ""));
+  EXPECT_FALSE(may_read_metrics(with_tokens(AccessMode::open, true), ""));
+  EXPECT_TRUE(may_read_metrics(with_tokens(AccessMode::open, true),
+                               std::string("Bearer ") + kMetricsToken));
 }
 
-TEST_F(ServeAccessTest, RefusesUnreadableFilesAndWeakTokens) {
-  settings.admin_token_file = folder.file("missing");
-  EXPECT_EQ(refusal(), "unreadable_file");
-  folder.write("empty", "");
-  settings.admin_token_file = folder.file("empty");
-  EXPECT_EQ(refusal(), "unreadable_file");
-  folder.write("short", "0123456789abcde\n");
-  settings.admin_token_file = folder.file("short");
-  EXPECT_EQ(refusal(), "out_of_range");
-  settings.admin_token_file.clear();
-  setenv(kVariable, "0123456789abcde", 1);
-  EXPECT_EQ(refusal(), "out_of_range");
-  setenv(kVariable, "", 1);
-  EXPECT_EQ(refusal(), "out_of_range");
+// Signed tokens of a cluster.
+
+constexpr double kNow = 1'790'000'000;
+const std::string kKey(TokenSigner::kMinKeyBytes, 'k');
+
+TokenClaims make_claims() {
+  return {TokenClaims::Kind::grant, Role::controller, "s18446744073709551615", 1'790'000'060};
+}
+
+TEST(SignedToken, HasItsContentUntilItEnds) {
+  const TokenSigner signer(kKey);
+  const std::string token = signer.sign(make_claims());
+  EXPECT_LE(token.size(), kMaxTokenBytes);
+  EXPECT_NE(signer.sign(make_claims()), token) << "two tokens differ";
+  EXPECT_TRUE(TokenSigner::has_signature(token));
+  EXPECT_FALSE(TokenSigner::has_signature("ABCDEFGHIJKLMNOPQRSTUV"));
+  const auto claims = TokenSigner(kKey).verify(token, kNow);  // another node
+  ASSERT_TRUE(claims);
+  EXPECT_EQ(claims->kind, TokenClaims::Kind::grant);
+  EXPECT_EQ(claims->role, Role::controller);
+  EXPECT_EQ(claims->session, "s18446744073709551615");
+  EXPECT_EQ(claims->ends, 1'790'000'060U);
+  EXPECT_TRUE(signer.verify(token, kNow + 59.9));
+  EXPECT_FALSE(signer.verify(token, kNow + 60));
+  EXPECT_FALSE(TokenSigner(std::string(kKey.size(), 'l')).verify(token, kNow)) << "another key";
+}
+
+TEST(SignedToken, ATokenWithoutATimeDoesNotEnd) {
+  const TokenSigner signer(kKey);
+  const std::string token = signer.sign({TokenClaims::Kind::resume, Role::viewer, "s1", 0});
+  const auto claims = signer.verify(token, 100 * kNow);
+  ASSERT_TRUE(claims);
+  EXPECT_EQ(claims->kind, TokenClaims::Kind::resume);
+}
+
+TEST(SignedToken, NoChangedTokenIsValid) {
+  const TokenSigner signer(kKey);
+  const std::string token = signer.sign(make_claims());
+  for (std::size_t i = 0; i < token.size(); ++i) {
+    std::string changed = token;
+    changed[i] = changed[i] == 'A' ? 'B' : 'A';
+    EXPECT_FALSE(signer.verify(changed, kNow)) << i;
+    EXPECT_FALSE(signer.verify(token.substr(0, i), kNow)) << i;
+  }
+  EXPECT_FALSE(signer.verify(token + "A", kNow));
+  EXPECT_FALSE(signer.verify(token + "=", kNow));
+  EXPECT_FALSE(signer.verify("." + token, kNow));
 }
 
 }  // namespace

@@ -1,10 +1,8 @@
 // Many clients ask simultaneously for the last free places. In each round, exactly as many clients
 // succeed as there are places.
 
-#include <algorithm>
-#include <atomic>
 #include <barrier>
-#include <thread>
+#include <map>
 
 #include "tests/server/fixture/session_fixture.h"
 #include "tests/server/transport/transport_fixture.h"
@@ -33,46 +31,41 @@ class AdmissionRace : public testing::Test {
  protected:
   AdmissionRace() { limits.max_sessions_per_address = limits.max_sessions = 100; }
 
-  /// A server with one session, `s1`.
-  TestServer& serve() {
+  /// Starts a server with one session, `s1`, and connects clients.
+  void serve(int clients_to_connect = kAsking) {
     ServerSettings settings = test_settings(limits);
     settings.threads = 4;
     server = std::make_unique<TestServer>(catalogue, settings);
     EXPECT_TRUE(server->create_session("first", to_scene(mixed_scene_text())).ok());
-    return *server;
-  }
-  void connect_all() {
-    for (int i = 0; i < kAsking; ++i) {
+    for (int i = 0; i < clients_to_connect; ++i) {
       clients.push_back(std::make_unique<TestClient>(*server, i + 1));
     }
   }
-  /// Returns the number of clients that get a result. The other clients must get an error with this
-  /// limit.
-  std::size_t admitted(const char* method, const Json& params, const std::string& limit,
-                       std::size_t maximum = kPlaces) {
+  /// Returns the results of the clients that get one. The others must get an error with this limit.
+  std::map<int, Json> admitted(const char* method, const Json& params, const std::string& limit,
+                               std::size_t maximum = kPlaces) {
     std::vector<Json> replies(kAsking);
     all_at_once([&](int i) { replies[i] = clients[i]->call(method, params); });
-    std::size_t count = 0;
-    for (const Json& reply : replies) {
-      if (reply.contains("result")) {
-        ++count;
+    std::map<int, Json> results;
+    for (int i = 0; i < kAsking; ++i) {
+      if (replies[i].contains("result")) {
+        results[i] = replies[i].at("result");
       } else {
-        EXPECT_EQ(reply.at("error").at("code"), 1005);
-        EXPECT_EQ(reply.at("error").at("data").at("limit"), limit);
-        EXPECT_EQ(reply.at("error").at("data").at("maximum"), maximum);
+        EXPECT_EQ(replies[i].at("error").at("code"), 1005);
+        EXPECT_EQ(replies[i].at("error").at("data").at("limit"), limit);
+        EXPECT_EQ(replies[i].at("error").at("data").at("maximum"), maximum);
       }
     }
-    return count;
+    EXPECT_EQ(results.size(), kPlaces);
+    return results;
   }
-  void close_all_but_the_first() {
-    const Json listed = clients[0]->result("session.list");
-    for (const Json& session : listed.at("sessions")) {
-      const std::string id = session.at("session");
-      if (id == "s1") continue;
-      const bool is_closed = std::ranges::any_of(clients, [&](const auto& client) {
-        return client->call("session.close", {{"session", id}}).contains("result");
-      });
-      EXPECT_TRUE(is_closed) << id;
+  void expect_created(const std::string& limit, std::size_t maximum) {
+    serve();
+    const Json params{{"name", "n"}, {"scene", "mixed"}};
+    for (int round = 0; round < kRounds; ++round) {
+      for (const auto& [creator, result] : admitted("session.create", params, limit, maximum)) {
+        clients[creator]->result("session.close", {{"session", result.at("session")}});
+      }
     }
   }
 
@@ -84,7 +77,7 @@ class AdmissionRace : public testing::Test {
 
 TEST_F(AdmissionRace, ForTheLastConnections) {
   limits.max_connections = kPlaces;
-  serve();
+  serve(0);
   for (int round = 0; round < kRounds; ++round) {
     clients.resize(kAsking);
     all_at_once([&](int i) { clients[i] = std::make_unique<TestClient>(*server, i + 1); });
@@ -98,10 +91,9 @@ TEST_F(AdmissionRace, ForTheLastConnections) {
 TEST_F(AdmissionRace, ForTheLastPlacesOfASession) {
   limits.max_clients_per_session = kPlaces;
   serve();
-  connect_all();
   for (int round = 0; round < kRounds; ++round) {
     for (int again = 0; again < 2; ++again) {  // members may join again
-      EXPECT_EQ(admitted("session.join", {{"session", "s1"}}, "clients_per_session"), kPlaces);
+      admitted("session.join", {{"session", "s1"}}, "clients_per_session");
     }
     for (const auto& client : clients) client->call("session.leave");
   }
@@ -109,50 +101,12 @@ TEST_F(AdmissionRace, ForTheLastPlacesOfASession) {
 
 TEST_F(AdmissionRace, ForTheLastSessions) {
   limits.max_sessions = 1 + kPlaces;
-  serve();
-  connect_all();
-  for (int round = 0; round < kRounds; ++round) {
-    EXPECT_EQ(
-        admitted("session.create", {{"name", "n"}, {"scene", "mixed"}}, "sessions", 1 + kPlaces),
-        kPlaces);
-    close_all_but_the_first();
-  }
+  expect_created("sessions", 1 + kPlaces);
 }
 
 TEST_F(AdmissionRace, ForTheLastSessionsOfAnAddress) {
   limits.max_sessions_per_address = kPlaces;
-  serve();
-  connect_all();
-  for (int round = 0; round < kRounds; ++round) {
-    EXPECT_EQ(
-        admitted("session.create", {{"name", "n"}, {"scene", "mixed"}}, "sessions_per_address"),
-        kPlaces);
-    close_all_but_the_first();
-  }
-}
-
-// A grab is a lease, not a limit, but clients compete for it in the same way.
-TEST_F(AdmissionRace, ForTheHoldOfABody) {
-  serve();
-  connect_all();
-  for (const auto& client : clients) client->result("session.join", {{"session", "s1"}});
-  for (int round = 0; round < kRounds; ++round) {
-    std::vector<Json> replies(kAsking);
-    all_at_once([&](int i) {
-      replies[i] = clients[i]->call("grab.start",
-                                    {{"body", 3}, {"particle", 0}, {"target", {0.5, 0.5, 0.5}}});
-    });
-    int held = 0;
-    for (int i = 0; i < kAsking; ++i) {
-      if (replies[i].contains("error")) {
-        EXPECT_EQ(replies[i].at("error").at("data").at("kind"), "busy");
-      } else {
-        ++held;
-        clients[i]->result("grab.end", {{"grab", replies[i].at("result").at("grab")}});
-      }
-    }
-    EXPECT_EQ(held, 1);
-  }
+  expect_created("sessions_per_address", kPlaces);
 }
 
 /// Real sockets at several endpoints. Each round uses a new server, because the previous clients

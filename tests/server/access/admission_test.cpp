@@ -85,19 +85,13 @@ TEST(MessageMeter, EachClassHasItsOwnLimit) {
   }
 }
 
-TEST(MessageMeter, BytesAreCountedBeforeAMessageIsRead) {
+TEST(MessageMeter, BytesAndRefusalsAreLimited) {
   const SteadyClock::time_point now;
   MessageMeter meter(few_messages(), now);
   EXPECT_FALSE(meter.count_bytes(2000, now));
   EXPECT_EQ(meter.count_bytes(1, now)->limit, "message_bytes_per_second");
-}
-
-TEST(MessageMeter, RefusedMessagesBeyondTheirLimitAreAFlood) {
-  const SteadyClock::time_point now;
-  MessageMeter meter(few_messages(), now);
-  EXPECT_FALSE(meter.count_bytes(2000, now));
-  for (int i = 0; i < 6; ++i) EXPECT_FALSE(meter.count_bytes(1, now)->is_flood) << i;
-  EXPECT_TRUE(meter.count_bytes(1, now)->is_flood);
+  for (int i = 1; i < 6; ++i) EXPECT_FALSE(meter.count_bytes(1, now)->is_flood) << i;
+  EXPECT_TRUE(meter.count_bytes(1, now)->is_flood) << "beyond the limit of refusals";
 }
 
 TEST(ResourceBudget, ReturnsReleasedResources) {

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
-#include <stdexcept>
 
 #include "tests/support/patience.h"
 #include "tests/support/temporary_folder.h"

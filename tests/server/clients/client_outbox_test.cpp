@@ -2,10 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <memory>
-#include <string>
-
-#include "protocol/frame/frame_codec.h"
 #include "tests/server/fixture/fake_connection.h"
 
 namespace vat::test::client_outbox_test {
@@ -95,25 +91,6 @@ TEST_F(Outbox, WakesOnceIfAFrameWasMissed) {
   EXPECT_EQ(waker->count, 1) << "the client no longer subscribes";
 }
 
-TEST_F(Outbox, AnAcknowledgementIsForAllBeforeIt) {
-  offer(1, 3);
-  EXPECT_TRUE(outbox.acknowledge(3, now));
-  offer(4, 10);
-  EXPECT_EQ(frame_count(), 6u);
-  EXPECT_TRUE(outbox.acknowledge(2, now)) << "late acknowledgement without effect";
-  offer(11, 12);
-  EXPECT_EQ(frame_count(), 6u);
-}
-
-TEST_F(Outbox, RefusesAcknowledgementsOfUnsentFrames) {
-  EXPECT_FALSE(outbox.acknowledge(0, now));
-  EXPECT_FALSE(outbox.acknowledge(1, now));
-  offer(1, 5);
-  EXPECT_FALSE(outbox.acknowledge(4, now));
-  EXPECT_FALSE(outbox.acknowledge(0xffffffff, now));
-  EXPECT_FALSE(outbox.frame_channel(subscription).is_ready) << "the window is still full";
-}
-
 TEST_F(Outbox, ARejectedFrameIsReportedToItsSourceAndAcknowledged) {
   offer(1, 3);
   EXPECT_FALSE(outbox.acknowledge(4, now, true)) << "this frame was not sent";
@@ -157,17 +134,12 @@ TEST_F(Outbox, TheReasonOfATooSlowClientNamesItsRejectedNotifications) {
 // The cost of a peer that stops reading, beyond the buffers of the operating system.
 TEST_F(Outbox, OneFrameAtMostWaitsForTheSocket) {
   connection->stall(true);
+  outbox.send_event(membership, share(R"("event")"));  // does not delay frames
   offer(1, 50);
   EXPECT_EQ(frame_count(), 1u);
   connection->stall(false);
   offer(51, 60);
   EXPECT_EQ(frame_count(), 3u);
-}
-
-TEST_F(Outbox, ControlThatWaitsHoldsUpNoFrame) {
-  connection->stall(true);
-  outbox.send_event(membership, share(R"("event")"));
-  EXPECT_TRUE(outbox.frame_channel(subscription).is_ready);
 }
 
 // The transport may report late that the socket has accepted the frame.

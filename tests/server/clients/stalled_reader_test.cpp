@@ -1,84 +1,18 @@
-// The cost of a viewer that stops reading, over a real socket.
+// The memory of messages that wait for a real socket.
 
-#include <memory>
-#include <random>
-#include <vector>
-
-#include "protocol/frame/frame_codec.h"
-#include "server/frames/frame_delivery.h"
-#include "server/messages/limits.h"
+#include "server/clients/client_outbox.h"
 #include "server/operations/heap.h"
 #include "tests/server/transport/transport_fixture.h"
 #include "tests/support/memory/allocator.h"
 #include "tests/support/wait.h"
 
+#if VAT_HAS_SYSTEM_ALLOCATOR
+
 namespace vat::test::stalled_reader_test {
 namespace {
 
-class NoWaker final : public FrameWaker {
- public:
-  void wake(ConnectionId) override {}
-  void frame_rejected(ConnectionId, std::uint32_t) override {}
-};
-
-/// Random particle positions in each state. Frames are unpredictable and therefore large.
-PublishedState make_state(std::uint64_t tick, std::mt19937& random) {
-  constexpr std::size_t kParticles = 60'000;
-  std::uniform_real_distribution<double> place(0, 1);
-  PublishedState state;
-  state.header.epoch = 1;
-  state.header.tick = tick;
-  state.bodies.resize(1);
-  state.bodies[0].id = 1;
-  state.bodies[0].positions.resize(kParticles);
-  for (Vec3& position : state.bodies[0].positions) {
-    position = Vec3(place(random), place(random), place(random));
-  }
-  return state;
-}
-
 class StalledReader : public TransportTest {};
 
-TEST_F(StalledReader, OneFrameAtMostWaitsOutsideTheSystem) {
-  start();
-  WsClient client(port);
-  ASSERT_TRUE(recorder.wait_opened(1));
-  const auto connection = recorder.connection(1);
-  const auto outbox = std::make_shared<ClientOutbox>(connection);
-  const std::uint64_t membership = outbox->join();
-  outbox->start_epoch(membership, 1);
-  ServerMetrics metrics;
-  FrameDelivery delivery(Vat{Vec3::Zero(), Vec3::Ones(), true, {}}, metrics);
-  const auto waker = std::make_shared<NoWaker>();
-  SteadyClock::time_point now{std::chrono::hours(1)};
-  delivery.add(outbox, outbox->subscribe(membership, waker, now), {});
-
-  std::mt19937 random(1);
-  std::size_t most_queued = 0;
-  for (std::uint64_t tick = 1; tick <= 50; ++tick) {
-    PublishedState state = make_state(tick, random);
-    delivery.publish(state, now += std::chrono::milliseconds(20));
-    most_queued = std::max(most_queued, connection->queued_bytes());
-  }
-  const std::string frame = client.read_message().payload;
-  EXPECT_GT(frame.size(), 200'000U) << "larger than the system's buffers";
-  EXPECT_GT(most_queued, 0U);
-  EXPECT_LT(most_queued, frame.size() + frame.size() / 2) << "one frame of about this size";
-  // The viewer reads again, and receives only the frames in flight.
-  std::size_t frames = 1;
-  client.send_text("done");
-  ASSERT_TRUE(recorder.wait([&] { return recorder.received.size() == 1; }));
-  while (connection->queued_bytes() > 0) {
-    client.read_message();
-    ++frames;
-  }
-  EXPECT_LE(frames, kFrameWindow);
-
-  outbox->close_if_silent(now + std::chrono::seconds(31), std::chrono::seconds(30));
-  EXPECT_EQ(client.read_close(), 4008);
-}
-
-#if VAT_HAS_SYSTEM_ALLOCATOR
 // Overhead dominates the memory of short messages.
 TEST_F(StalledReader, AMessageThatWaitsTakesNoMoreThanItCountsFor) {
   constexpr std::size_t kMessages = 20'000;
@@ -118,7 +52,7 @@ TEST_F(StalledReader, AnEventThatWaitsForManyIsStoredOnce) {
   EXPECT_EQ(event.use_count(), 1 + static_cast<long>(kClients)) << "the event waits for all";
   EXPECT_LT(heap_in_use(), before + kClients * kMostOfEach);
 }
-#endif
 
 }  // namespace
 }  // namespace vat::test::stalled_reader_test
+#endif  // VAT_HAS_SYSTEM_ALLOCATOR

@@ -1,6 +1,6 @@
 // Sessions without clients hibernate after some time, and end after a longer time.
 
-#include "tests/server/fixture/session_fixture.h"
+#include "tests/server/fixture/host.h"
 #include "tests/support/temporary_folder.h"
 
 namespace vat::test::empty_session_test {
@@ -11,7 +11,7 @@ using namespace std::chrono_literals;
 constexpr auto kResumeTime = 2s;
 constexpr auto kHibernateAfter = 10s;
 constexpr auto kExpireAfter = 60s;
-constexpr auto kStatusInterval = 500ms;  // interval of a session's status
+constexpr auto kStatusInterval = 500ms;  // of a session, which then also removes participants
 constexpr auto kExpiryCheck = 15s;       // interval of the server's check of expired sessions
 
 class EmptySession : public SessionTest {
@@ -25,18 +25,9 @@ class EmptySession : public SessionTest {
     return limits;
   }
 
-  /// Returns the entry of session.list; null if the session has ended.
-  Json listed(const std::string& session) {
-    const Json sessions = client->result("session.list").at("sessions");
-    for (const Json& entry : sessions) {
-      if (entry.at("session") == session) return entry;
-    }
-    return nullptr;
-  }
+  Json listed(const std::string& session) { return client->listed(session); }
   std::uint64_t tick_of(const std::string& session) { return listed(session).at("tick"); }
-  std::string create() {
-    return client->result("session.create", {{"name", "n"}, {"scene", "mixed"}}).at("session");
-  }
+  std::string create() { return client->create_session(); }
   /// Returns the number of sessions in a state.
   std::string count(const std::string& state) {
     const std::string metrics = server.metrics();
@@ -61,30 +52,12 @@ TEST_F(EmptySession, HibernatesInTimeAndContinuesWhenSomebodyJoins) {
   EXPECT_TRUE(listed(session).at("playing"));
   server.clock().advance(1s);
   EXPECT_EQ(tick_of(session), tick + 50);
+  server.clock().advance(2 * kHibernateAfter);
+  EXPECT_EQ(tick_of(session), tick + 50 + 1000) << "plays while somebody is in it";
   EXPECT_EQ(count("hibernating"), "0");
-}
-
-// A hibernated session continues with the same bits as a session that was never empty.
-TEST_F(EmptySession, ThatHasHibernatedHasTheSameBits) {
-  const std::string session = create();
-  server.clock().advance(2 * kHibernateAfter);
-  ASSERT_EQ(count("hibernating"), "1");
-  const auto visitor = join(session);
   visitor->result("control.pause");
-  visitor->result("control.step", {{"ticks", 7}});
-  const Json state = visitor->result("session.hash");
-  Simulation expected = Simulation::create(to_scene(mixed_scene_text())).value();
-  advance_ticks(expected, state.at("tick"));
-  EXPECT_EQ(state.at("hash"), hash_of(expected));
-}
-
-TEST_F(EmptySession, WithSomebodyInItPlaysOn) {
-  const std::string session = create();
-  const auto visitor = join(session);
-  server.clock().advance(2 * kHibernateAfter);
-  const std::uint64_t before = tick_of(session);
-  server.clock().advance(1s);
-  EXPECT_EQ(tick_of(session), before + 50);
+  EXPECT_EQ(visitor->result("session.hash").at("hash"), mixed_hash_after(tick + 50 + 1000))
+      << "the same bits as a session that was never empty";
 }
 
 // The participant may resume.
@@ -155,12 +128,10 @@ TEST(EmptyReplay, EndsInTimeThoughSessionsDoNot) {
   limits.hibernate_after = 1s;
   limits.expire_after = 0ms;
   limits.replay_expire_after = kExpireAfter;
-  TestServer server(catalogue, test_settings(limits, folder.file("data")));
-  ASSERT_TRUE(server.create_session("first", to_scene(mixed_scene_text())).ok());
-  TestClient client(server, 1);
-  client.result("session.create", {{"name", "n"}, {"scene", "mixed"}});
-  client.result("session.join", {{"session", "s1"}});
-  client.result("control.pause");
+  Host host(catalogue, folder.file("data"), limits);
+  TestServer& server = host.server;
+  TestClient& client = *host.client;
+  client.create_session();
   const auto sessions = [&] { return client.result("session.list").at("sessions").size(); };
   const Json replay = client.result("replay.open", {{"session", "s1"}}).at("session");
   client.result("session.join", {{"session", replay}});
@@ -192,14 +163,82 @@ TEST_F(IdleSession, WakesForItsStatusesOnly) {
   EXPECT_EQ(client->events("session.status").size(), 20U);
   EXPECT_LE(server.clock().tasks_run() - tasks, 20U + 1)
       << "one more for the check of expired sessions";
-}
-
-TEST_F(IdleSession, EmptyWakesOnlyForStatuses) {
   client->result("session.leave");
   server.clock().advance(1s);
-  const std::size_t tasks = server.clock().tasks_run();
+  const std::size_t before = server.clock().tasks_run();
   server.clock().advance(10s);
-  EXPECT_LE(server.clock().tasks_run() - tasks, 20U + 1);
+  EXPECT_LE(server.clock().tasks_run() - before, 20U + 1) << "an empty session";
+}
+
+// Sessions that their creators have abandoned can be closed by others from the same address.
+
+class AbandonedSession : public SessionTest {
+ protected:
+  AbandonedSession() : SessionTest(limits()) {}
+  static ServerLimits limits() {
+    ServerLimits limits = unhurried_limits();
+    limits.resume_time = kResumeTime;
+    limits.max_sessions_per_address = 2;
+    return limits;
+  }
+  static bool closable(TestClient& client, const std::string& session) {
+    return client.listed(session).at("closable");
+  }
+  /// Returns a session whose owner has disconnected and can no longer resume.
+  std::string abandon() {
+    const auto owner = connect();
+    std::string session = owner->create_session();
+    owner->result("session.join", {{"session", session}});
+    owner->disconnect();
+    server.clock().advance(kResumeTime + kStatusInterval);
+    return session;
+  }
+};
+
+TEST_F(AbandonedSession, AreClosedByAControllerOfTheirAddressOnly) {
+  const std::string session = abandon();
+  const auto elsewhere = connect_from("10.0.0.7");
+  EXPECT_FALSE(closable(*elsewhere, session));
+  EXPECT_EQ(elsewhere->error("session.close", {{"session", session}}).at("code"), 1006);
+  EXPECT_TRUE(closable(*client, session));
+  client->result("session.close", {{"session", session}});
+  EXPECT_EQ(client->error("session.join", {{"session", session}}).at("code"), 1002);
+}
+
+TEST_F(AbandonedSession, MakeRoomForNewOnesOfTheirAddress) {
+  const std::string session = abandon();
+  const auto owner = connect();
+  owner->create_session();
+  const Json error = client->error("session.create", {{"name", "n"}, {"scene", "mixed"}});
+  EXPECT_EQ(error.at("data").at("limit"), "sessions_per_address");
+  EXPECT_EQ(error.at("data").at("abandoned"), 1) << "the creator of the other is connected";
+  EXPECT_TRUE(has_sample(server.metrics(), "vat_abandoned_sessions 1"));
+  EXPECT_TRUE(has_sample(server.metrics(), R"(vat_refused_total{limit="sessions_per_address"} 1)"));
+  connect_from("10.0.0.7")->create_session();
+  client->result("session.close", {{"session", session}});
+  client->create_session();
+}
+
+TEST_F(AbandonedSession, AreNotThoseWithAnOwnerOrAParticipant) {
+  const auto owner = connect();
+  const std::string session = owner->create_session();
+  EXPECT_FALSE(closable(*client, session)) << "the owner may still join";
+  EXPECT_TRUE(closable(*owner, session));
+  const auto guest = join(session);
+  owner->disconnect();
+  server.clock().advance(2 * kResumeTime);
+  EXPECT_FALSE(closable(*client, session)) << "there is a guest";
+  guest->disconnect();
+  server.clock().advance(kResumeTime / 2);
+  EXPECT_FALSE(closable(*client, session)) << "the guest may resume";
+  EXPECT_EQ(client->error("session.close", {{"session", session}}).at("code"), 1006);
+  server.clock().advance(kResumeTime);
+  EXPECT_TRUE(closable(*client, session));
+  client->result("session.close", {{"session", session}});
+  client->result("session.leave");
+  server.clock().advance(2 * kResumeTime);
+  EXPECT_FALSE(closable(*client, "s1")) << "the first session";
+  EXPECT_TRUE(has_sample(server.metrics(), "vat_abandoned_sessions 0"));
 }
 
 }  // namespace

@@ -1,12 +1,6 @@
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <optional>
-#include <string>
-
 #include "tests/server/fixture/host.h"
-#include "tests/server/fixture/session_fixture.h"
 #include "tests/support/temporary_folder.h"
 
 namespace vat::test {

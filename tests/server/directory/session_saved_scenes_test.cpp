@@ -2,12 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include <filesystem>
-#include <memory>
-#include <string>
-
 #include "tests/server/directory/saved_states_fixture.h"
-#include "tests/server/fixture/session_fixture.h"
 
 namespace vat::test::session_saved_scenes_test {
 namespace {
@@ -45,8 +40,7 @@ TEST_P(SavedScenesTest, AreUsedLikeThoseOfTheCatalogue) {
   client().result("scene.load", {{"scene", "mixed"}});
   client().result("scene.load", {{"scene", "my ball"}});
   EXPECT_EQ(host->hash(), ball);
-  const Json made = client().result("session.create", {{"name", "n"}, {"scene", "my ball"}});
-  client().result("session.join", {{"session", made.at("session")}});
+  client().result("session.join", {{"session", client().create_session("my ball")}});
   client().result("control.pause");
   client().result("control.reset");
   EXPECT_EQ(host->hash(), ball);

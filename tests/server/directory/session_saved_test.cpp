@@ -6,7 +6,6 @@
 #include "server/session/core/scene_loading.h"
 #include "server/storage/sqlite/database.h"
 #include "tests/server/directory/saved_states_fixture.h"
-#include "tests/server/fixture/session_fixture.h"
 #include "tests/support/lone_environment.h"
 
 namespace vat::test::session_saved_test {
@@ -42,19 +41,15 @@ TEST_P(SavedStatesTest, ALoadContinuesExactly) {
 }
 
 TEST_P(SavedStatesTest, ReleasesGrabs) {
-  const Json grab =
-      client().result("grab.start", {{"body", 3}, {"particle", 0}, {"target", {0.5, 0.5, 0.9}}});
+  const std::uint64_t grab = client().grab(3);
   host->step(3);
   client().result("session.save", kFirst);
   const std::string held = host->hash();
   client().result("session.load", kFirst);
   EXPECT_NE(host->hash(), held) << "the grab of the saved state must not act";
-  EXPECT_TRUE(client()
-                  .call("grab.move", {{"grab", grab.at("grab")}, {"target", {0, 0, 0}}})
-                  .contains("error"));
-  const Json next =
-      client().result("grab.start", {{"body", 3}, {"particle", 0}, {"target", {0.5, 0.5, 0.9}}});
-  EXPECT_GT(next.at("grab"), grab.at("grab"));
+  EXPECT_TRUE(
+      client().call("grab.move", {{"grab", grab}, {"target", {0, 0, 0}}}).contains("error"));
+  EXPECT_GT(client().grab(3), grab);
 }
 
 TEST_P(SavedStatesTest, AreListedReplacedAndDeleted) {
@@ -84,8 +79,8 @@ TEST_P(SavedStatesTest, AreListedReplacedAndDeleted) {
 
 TEST_P(SavedStatesTest, AreOfTheirSessionAlone) {
   client().result("session.save", kFirst);
-  const Json second = client().result("session.create", {{"name", "n"}, {"scene", "mixed"}});
-  client().result("session.join", {{"session", second.at("session")}});
+  const std::string second = client().create_session();
+  client().result("session.join", {{"session", second}});
   EXPECT_TRUE(client().result("session.saves").at("states").empty());
   client().error("session.load", kFirst);
 }
@@ -116,8 +111,8 @@ TEST_P(SavedStatesTest, CountAndBytesAreLimited) {
   limits.max_state_bytes_per_session *= 10;
   restart(limits);
   for (const char* name : {"first", "second"}) client().result("session.save", {{"name", name}});
-  const Json second = client().result("session.create", {{"name", "n"}, {"scene", "mixed"}});
-  client().result("session.join", {{"session", second.at("session")}});
+  const std::string second = client().create_session();
+  client().result("session.join", {{"session", second}});
   refused("third", "state_bytes_in_all", limits.max_state_bytes_in_all);
   client().result("session.join", {{"session", "s1"}});
   client().result("session.delete_save", {{"name", "second"}});
@@ -167,10 +162,10 @@ TEST_P(SavedStatesTest, ALoadAndTheSavedStateSurviveARestart) {
 }
 
 TEST_P(SavedStatesTest, GoWithTheirSession) {
-  const Json second = client().result("session.create", {{"name", "n"}, {"scene", "mixed"}});
-  client().result("session.join", {{"session", second.at("session")}});
+  const std::string second = client().create_session();
+  client().result("session.join", {{"session", second}});
   client().result("session.save", kFirst);
-  client().result("session.close", {{"session", second.at("session")}});
+  client().result("session.close", {{"session", second}});
   host.reset();
   if (!GetParam()) return;
   EXPECT_EQ(
@@ -183,14 +178,13 @@ INSTANTIATE_TEST_SUITE_P(Storage, SavedStatesTest, testing::Bool(),
 
 class SavedStateEntries : public testing::Test {
  protected:
-  SavedStateEntries() : scene_(Simulation::create(to_scene(mixed_scene_text())).value()) {}
+  SavedStateEntries() : scene_(mixed_simulation()) {}
 
   /// Returns the error of a refused restore; for a limit, its name.
   std::string fault(const SavedState& state, std::size_t particles_in_all = 1'000'000) {
     ResourceBudget resources({particles_in_all, kUnlimitedResources.springs});
     const SessionEnvironment environment = environment_.with(resources);
-    SessionCore core("s1", {"n"}, Simulation::create(to_scene(mixed_scene_text())).value(),
-                     environment);
+    SessionCore core("s1", {"n"}, mixed_simulation(), environment);
     try {
       const ActionResult result =
           read_restore(params_of_restore(state))(core, core.participants().find_or_add(1));
@@ -202,7 +196,7 @@ class SavedStateEntries : public testing::Test {
   }
   /// Returns the state of a session that has more bodies than its scene.
   SavedState grown() {
-    Simulation simulation = Simulation::create(to_scene(mixed_scene_text())).value();
+    Simulation simulation = mixed_simulation();
     const Snapshot as_loaded = simulation.snapshot();
     BodyDescription body = simulation.scene().bodies.back();
     body.name = "second";
@@ -224,6 +218,8 @@ TEST_F(SavedStateEntries, AreUnpackedUpToTheLimitOfASession) {
   EXPECT_THAT(fault(state), HasSubstr("incorrect"));
   state.state = bytes_that_say(static_cast<std::uint32_t>(most + 1));
   EXPECT_THAT(fault(state), HasSubstr("too large"));
+  state.fields = "[]";
+  EXPECT_THAT(fault(state), HasSubstr("no object"));
 }
 
 TEST_F(SavedStateEntries, HaveNoMoreParticlesThanASessionMay) {
@@ -231,12 +227,6 @@ TEST_F(SavedStateEntries, HaveNoMoreParticlesThanASessionMay) {
   EXPECT_EQ(fault(grown(), particles), "particles_in_all");
   environment_.limits.max_particles = particles;
   EXPECT_EQ(fault(grown()), "particles");
-}
-
-TEST_F(SavedStateEntries, ThatAreNoObjectAreDamaged) {
-  SavedState state = grown();
-  state.fields = "[]";
-  EXPECT_THAT(fault(state), HasSubstr("no object"));
 }
 
 }  // namespace

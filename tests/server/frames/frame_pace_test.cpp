@@ -142,63 +142,6 @@ TEST_F(FramePaceTest, TheRateGoesDownNoFurtherThanIsAllowed) {
   EXPECT_EQ(level(), (Level{1, 4, 0}));
 }
 
-class FrameWindowTest : public testing::Test {
- protected:
-  /// Sends a frame that is acknowledged after `delay`.
-  void pass(std::chrono::milliseconds delay) {
-    window.sent(++number, now);
-    now += delay;
-    EXPECT_TRUE(window.acknowledge(number, now));
-  }
-  SteadyClock::time_point now{1h};
-  std::uint32_t number = 0;
-  FrameWindow window;
-};
-
-TEST_F(FrameWindowTest, KnowsFramesInFlightAndTheirAges) {
-  EXPECT_FALSE(window.waits_since());
-  const auto first = now;
-  window.sent(5, now);
-  window.sent(7, now += 10ms);
-  window.sent(8, now += 10ms);
-  EXPECT_EQ(window.in_flight(), 3U);
-  EXPECT_EQ(window.waits_since(), first);
-  EXPECT_TRUE(window.acknowledge(6, now)) << "acknowledges frame 5";
-  EXPECT_EQ(window.in_flight(), 2U);
-  EXPECT_EQ(window.waits_since(), first + 10ms);
-  EXPECT_FALSE(window.acknowledge(9, now));
-  EXPECT_FALSE(window.acknowledge(0, now));
-  EXPECT_TRUE(window.acknowledge(8, now));
-  EXPECT_EQ(window.in_flight(), 0U);
-  EXPECT_TRUE(window.acknowledge(8, now)) << "a repeated acknowledgement has no effect";
-  window.clear();
-  EXPECT_FALSE(window.acknowledge(8, now)) << "acknowledgement of another session";
-}
-
-// If several frames are acknowledged together, the latest determines the delay.
-TEST_F(FrameWindowTest, MeasuresFromTheFrameThatIsAcknowledged) {
-  window.sent(1, now);
-  window.sent(2, now += 100ms);
-  EXPECT_TRUE(window.acknowledge(2, now + 30ms));
-  EXPECT_EQ(window.delays().count, 1U);
-  EXPECT_DOUBLE_EQ(window.delays().mean.count(), 0.03);
-  EXPECT_DOUBLE_EQ(window.delays().least.count(), 0.03);
-}
-
-TEST_F(FrameWindowTest, TheMeanFollowsAndTheLeastStays) {
-  for (int i = 0; i < 10; ++i) pass(20ms);
-  for (int i = 0; i < 20; ++i) pass(100ms);
-  EXPECT_NEAR(window.delays().mean.count(), 0.1, 0.001);
-  EXPECT_DOUBLE_EQ(window.delays().least.count(), 0.02);
-}
-
-// A longer minimum delay is not a queue.
-TEST_F(FrameWindowTest, TheLeastIsForgottenAfterTwentySeconds) {
-  pass(20ms);
-  for (int i = 0; i < 205; ++i) pass(100ms);
-  EXPECT_DOUBLE_EQ(window.delays().least.count(), 0.1);
-}
-
 TEST(FrameGroups, AllIfThereAreFew) {
   EXPECT_THAT(choose_groups({}, 8), ElementsAre());
   const std::vector<GroupClaim> claims = {{1, 0}, {5, 0}, {3, 9}};

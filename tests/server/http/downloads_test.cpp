@@ -12,18 +12,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(Downloads, AreFetchedOnceAndInTime) {
-  Downloads downloads;
-  const SteadyClock::time_point now{};
-  const std::string first = downloads.add({"a", "one"}, now).value();
-  const std::string second = downloads.add({"b", "two"}, now).value();
-  EXPECT_NE(first, second);
-  EXPECT_FALSE(downloads.take("/downloads/", now).has_value());
-  EXPECT_EQ(downloads.take(first, now)->content, "one");
-  EXPECT_FALSE(downloads.take(first, now).has_value());
-  EXPECT_FALSE(downloads.take(second, now + Downloads::kPatience).has_value());
-}
-
 TEST(Downloads, AreForgottenInTime) {
   Downloads downloads;
   const SteadyClock::time_point now{};
@@ -31,6 +19,18 @@ TEST(Downloads, AreForgottenInTime) {
   downloads.add({"b", "three"}, now + 1s);
   EXPECT_EQ(downloads.forget_old(now + Downloads::kPatience - 1ms), 8U);
   EXPECT_EQ(downloads.forget_old(now + Downloads::kPatience), 5U);
+}
+
+TEST(Downloads, AreBounded) {
+  Downloads downloads(10);
+  const SteadyClock::time_point now{};
+  const auto first = downloads.add({"a", "123456"}, now);
+  EXPECT_TRUE(first.has_value());
+  EXPECT_FALSE(downloads.add({"b", "12345"}, now).has_value());
+  EXPECT_TRUE(downloads.add({"c", "1234"}, now).has_value());
+  EXPECT_FALSE(downloads.add({"d", "1"}, now).has_value());
+  downloads.take(*first, now);
+  EXPECT_TRUE(downloads.add({"e", "123456"}, now).has_value());
 }
 
 TEST(Downloads, AreServedByTheSite) {
@@ -42,6 +42,7 @@ TEST(Downloads, AreServedByTheSite) {
       },
       downloads, clock);
   const std::string path = downloads.add({"a.vatrec", "one"}, clock.now()).value();
+  EXPECT_EQ(site({"GET", "/downloads/"}).status, 404);
   EXPECT_EQ(site({"POST", path}).status, 404);
   EXPECT_EQ(site({"HEAD", path}).status, 404);
   const HttpResponse response = site({"GET", path});
@@ -49,6 +50,7 @@ TEST(Downloads, AreServedByTheSite) {
   EXPECT_EQ(response.body, "one");
   EXPECT_EQ(site({"GET", path}).status, 404);
   const std::string late = downloads.add({"a.vatrec", "one"}, clock.now()).value();
+  EXPECT_NE(late, path);
   clock.advance(Downloads::kPatience);
   EXPECT_EQ(site({"GET", late}).status, 404);
 }

@@ -2,12 +2,6 @@
 // same bits as a simulation that receives the same commands at these ticks.
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <functional>
-#include <string>
-#include <vector>
 
 #include "protocol/scene/scene_json.h"
 #include "server/rpc/method_table.h"
@@ -19,7 +13,7 @@ namespace {
 
 class SessionCommands : public SessionTest {
  protected:
-  Simulation reference = Simulation::create(to_scene(mixed_scene_text())).value();
+  Simulation reference = mixed_simulation();
 
   std::uint64_t tick_of(const std::string& method, const Json& params = nullptr) {
     return client->result(method, params).at("tick");
@@ -40,6 +34,9 @@ InterfaceDescription wood_on_vat() {
   return interface;
 }
 
+const BodyPlacement kShifted{{0.4, 0.45, 0.25}, {}, {}};
+const BodyPlacement kTurned{{0.83, 0.7, 0.6}, Quat(0.6, 0.8, 0, 0), Vec3(2, 0, 0)};
+
 // The ball hits a wall, so its interface with the vat acts.
 TEST_F(SessionCommands, OfAPausedSessionTakeEffectBetweenItsSteps) {
   const std::string fresh = hash();
@@ -49,38 +46,28 @@ TEST_F(SessionCommands, OfAPausedSessionTakeEffectBetweenItsSteps) {
   const std::vector<Command> commands = {
       {"world.set_gravity",
        {{"gravity", {1, 0, -5}}},
-       [](Simulation& s) {
-         return s.set_gravity({1, 0, -5});
-       }},
+       [](Simulation& s) { return s.set_gravity(Vec3(1, 0, -5)); }},
       {"world.apply_force",
        {{"body", 3}, {"force", {20, 0, 0}}, {"duration", 0.05}},
-       [](Simulation& s) {
-         return s.apply_force(3, {20, 0, 0}, 0.05);
-       }},
+       [](Simulation& s) { return s.apply_force(3, Vec3(20, 0, 0), 0.05); }},
       {"world.move_body",
        {{"body", 3},
         {"position", {0.83, 0.7, 0.6}},
         {"orientation", {0.6, 0.8, 0, 0}},
         {"velocity", {2, 0, 0}}},
-       [](Simulation& s) {
-         return s.move_body(3, {{0.83, 0.7, 0.6}, Quat(0.6, 0.8, 0, 0), Vec3(2, 0, 0)});
-       }},
+       [](Simulation& s) { return s.move_body(3, kTurned); }},
       {"world.set_interface",
        {{"interface", {{"materials", {"wood", "vat"}}, {"stiffness", 5000}}}},
        [](Simulation& s) { return s.set_interface(wood_on_vat()); }},
       {"world.move_body",
        {{"body", 1}, {"position", {0.4, 0.45, 0.25}}},
-       [](Simulation& s) {
-         return s.move_body(1, {{0.4, 0.45, 0.25}, {}, {}});
-       }},
+       [](Simulation& s) { return s.move_body(1, kShifted); }},
       {"world.set_material",
        {{"material", rubber}},
        [&](Simulation& s) { return s.set_material(read_material(rubber, "/material").value()); }},
       {"world.move_vat",
        {{"offset", {0.3, 0, 0}}},
-       [](Simulation& s) {
-         return s.move_vat({0.3, 0, 0});
-       }},
+       [](Simulation& s) { return s.move_vat(Vec3(0.3, 0, 0)); }},
       {"world.set_numerics",
        {{"integrator", "runge_kutta_4"}},
        [](Simulation& s) { return s.set_numerics(IntegratorId::runge_kutta_4, 0.002); }},
@@ -177,9 +164,7 @@ TEST_F(SessionCommands, ReadsFollowTheEarlierCommandsOfTheirClient) {
 
 TEST_F(SessionCommands, BodiesComeAndGoWithANewEpoch) {
   const Json before = client->result("session.join").at("description");
-  const Json body = Json::parse(R"({"name":"second ball","kind":"rigid","material":"wood",
-      "spacing":0.1,"shape":{"type":"sphere","radius":0.12},"position":[0.3,0.7,0.7]})");
-  const Json added = client->result("world.add_body", {{"body", body}});
+  const Json added = client->result("world.add_body", {{"body", wooden_ball("second ball")}});
   EXPECT_EQ(added.at("body"), 4);
   Json description = client->wait_event("session.description");
   EXPECT_EQ(description.at("epoch"), before.at("epoch").get<int>() + 1);
@@ -195,13 +180,13 @@ TEST_F(SessionCommands, BodiesComeAndGoWithANewEpoch) {
 TEST_F(SessionCommands, ABodyMeltsWithANewEpoch) {
   const Json before = client->result("session.join").at("description");
   client->result("control.step", {{"ticks", 3}});
-  client->result("grab.start", {{"body", 2}, {"particle", 0}, {"target", {0.5, 0.5, 0.5}}});
+  const std::uint64_t grab = client->grab(2);
   client->mark();
   EXPECT_EQ(tick_of("world.melt_body", {{"body", 2}, {"material", "water"}}), 3u);
   const Json description = client->wait_event("session.description");
   EXPECT_EQ(description.at("epoch"), before.at("epoch").get<int>() + 1);
   EXPECT_EQ(description.at("bodies").at(1).at("kind"), "liquid");
-  EXPECT_EQ(client->error("grab.end", {{"grab", 1}}).at("code"), -32602);
+  EXPECT_EQ(client->error("grab.end", {{"grab", grab}}).at("code"), -32602);
 }
 
 // The frame of the tick in which a body melts follows the description with the new epoch.
@@ -211,8 +196,7 @@ TEST_F(SessionCommands, ABodyThatMeltsOnTimeBeginsAnEpoch) {
   client->result("scene.load", {{"scene", scene}});
   const Json before = client->wait_event("session.description");
   client->result("frames.subscribe");
-  const Json grab =
-      client->result("grab.start", {{"body", 2}, {"particle", 0}, {"target", {0.5, 0.5, 0.5}}});
+  const std::uint64_t grab = client->grab(2);
   client->mark();
   client->result("control.step", {{"ticks", 3}});
   const Json description = client->wait_event("session.description");
@@ -222,7 +206,7 @@ TEST_F(SessionCommands, ABodyThatMeltsOnTimeBeginsAnEpoch) {
   const GridFrame frame =
       client->wait_frame([](const GridFrame& each) { return each.header.tick == 3; });
   EXPECT_EQ(frame.header.epoch, description.at("epoch").get<std::uint32_t>());
-  EXPECT_EQ(client->error("grab.end", {{"grab", grab.at("grab")}}).at("code"), -32602);
+  EXPECT_EQ(client->error("grab.end", {{"grab", grab}}).at("code"), -32602);
 }
 
 /// The mixed scene with a nozzle that emits into the pool.

@@ -18,36 +18,31 @@ TEST_F(SessionEdits, BringBackABodyAsItWas) {
     for (const Json& one : scene.at("bodies")) {
       if (one.at("name") == name) body = one;
     }
+    using Members = std::vector<const char*>;
     const bool is_rigid = state.contains("orientation");
+    const Members moved =
+        is_rigid ? Members{"center_of_mass", "orientation", "velocity", "angular_velocity"}
+                 : Members{"positions", "velocities"};
     Json motion;
-    for (const char* member : {"positions", "velocities"}) {
-      if (!is_rigid) motion[member] = state.at(member);
-    }
-    for (const char* member : {"center_of_mass", "orientation", "velocity", "angular_velocity"}) {
-      if (is_rigid) motion[member] = state.at(member);
-    }
+    for (const char* member : moved) motion[member] = state.at(member);
     client->result("world.remove_body", {{"body", state.at("body")}});
     const Json id =
         client->result("world.add_body", {{"body", body}, {"state", motion}}).at("body");
     const Json back = client->result("state.query", {{"bodies", {name}}}).at("bodies").at(0);
     EXPECT_EQ(back.at("body"), id);
-    if (!is_rigid) {
-      EXPECT_EQ(back.at("positions"), state.at("positions"));
-      EXPECT_EQ(back.at("velocities"), state.at("velocities"));
-    } else {
-      EXPECT_EQ(back.at("center_of_mass"), state.at("center_of_mass"));
+    for (const char* member : is_rigid ? Members{"center_of_mass"} : moved) {
+      EXPECT_EQ(back.at(member), state.at(member)) << name;
     }
   }
 }
 
 TEST_F(SessionEdits, OfABodyThatAnotherHoldsWait) {
   const auto other = join();
-  const Json grab =
-      other->result("grab.start", {{"body", 3}, {"particle", 0}, {"target", {0.7, 0.7, 0.7}}});
+  const std::uint64_t grab = other->grab(3);
   const Json move = {{"body", 3}, {"position", {0.7, 0.6, 0.7}}};
   EXPECT_EQ(client->error("world.move_body", move).at("data").at("kind"), "busy");
   other->result("world.move_body", move);
-  other->result("grab.end", {{"grab", grab.at("grab")}});
+  other->result("grab.end", {{"grab", grab}});
   client->result("world.move_body", move);
 }
 
@@ -98,7 +93,7 @@ TEST_F(SessionEdits, MoveTheVatThatFramesShow) {
 TEST(EditLimits, HoldForSpringsOfAMaterial) {
   ServerLimits limits = unhurried_limits();
   const Catalogue catalogue = make_catalogue();
-  limits.max_springs = Simulation::create(to_scene(mixed_scene_text())).value().spring_count();
+  limits.max_springs = mixed_simulation().spring_count();
   Host host(catalogue, "", limits);
   Json rubber = host.client->result("scene.get").at("scene").at("materials").at(1);
   rubber["springs"]["structural"]["stiffness"] = 600;
@@ -113,7 +108,7 @@ TEST(EditLimits, HoldForSpringsOfAMaterial) {
 class StateConnections : public SessionTest {};
 
 TEST_F(StateConnections, AreThoseOfTheSimulation) {
-  Simulation reference = Simulation::create(to_scene(mixed_scene_text())).value();
+  Simulation reference = mixed_simulation();
   client->result("world.move_body",
                  {{"body", 3}, {"position", {0.3, 0.5, 0.7}}, {"velocity", {0, -1, 0}}});
   client->result("control.step", {{"ticks", 2}});
@@ -164,7 +159,7 @@ class StatsWithDiagnostics : public SessionTest {};
 
 TEST_F(StatsWithDiagnostics, HaveTheSumsOfTheSimulation) {
   EXPECT_FALSE(client->result("session.stats").contains("diagnostics"));
-  Simulation reference = Simulation::create(to_scene(mixed_scene_text())).value();
+  Simulation reference = mixed_simulation();
   client->result("control.step", {{"ticks", 10}});
   advance_ticks(reference, 10);
   const Json stats = client->result("session.stats", {{"diagnostics", true}});

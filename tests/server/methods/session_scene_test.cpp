@@ -50,27 +50,24 @@ TEST_F(SceneGet, TheCurrentOneHasTheChangesOfCommands) {
   // Nothing has moved yet, so the scene starts in the present state.
   EXPECT_EQ(hash_from(scene), changed);
   EXPECT_EQ(get(), scene);
+  client->result("world.set_gravity", {{"gravity", {0, 0, -1}}});
+  client->result("control.reset");
+  EXPECT_EQ(hash(), changed) << "a reset goes back to the loaded scene";
 }
 
-TEST_F(SceneGet, ReturnsACatalogueSceneDuringAnother) {
+TEST_F(SceneGet, ReturnsASceneOfTheCatalogueOrOfAUser) {
   EXPECT_EQ(get({{"scene", "unstable"}}), write_scene(to_scene(unstable_scene_text())));
-  const Json error = client->error("scene.get", {{"scene", "none"}});
-  EXPECT_EQ(error.at("data").at("kind"), "no_such_scene");
-  EXPECT_EQ(error.at("data").at("path"), "/scene");
-}
-
-TEST_F(SceneGet, OneThatAUserHasSaved) {
   client->result("world.set_gravity", {{"gravity", {0, 0, -1}}});
   client->result("scene.save", {{"name", "slow"}, {"scene", current()}});
   const Json scene = get({{"scene", "slow"}});
   EXPECT_EQ(scene.at("gravity"), Json({0.0, 0.0, -1.0}));
   EXPECT_EQ(scene.at("name"), "slow");
-}
-
-TEST_F(SceneGet, ANameAndCurrentDoNotGoTogether) {
+  const Json error = client->error("scene.get", {{"scene", "none"}});
+  EXPECT_EQ(error.at("data").at("kind"), "no_such_scene");
+  EXPECT_EQ(error.at("data").at("path"), "/scene");
   for (const bool current : {false, true}) {
-    const Json error = client->error("scene.get", {{"scene", "mixed"}, {"current", current}});
-    EXPECT_EQ(error.at("data").at("path"), "/current");
+    const Json both = client->error("scene.get", {{"scene", "mixed"}, {"current", current}});
+    EXPECT_EQ(both.at("data").at("path"), "/current");
   }
 }
 

@@ -5,7 +5,6 @@
 #include <array>
 #include <chrono>
 #include <memory>
-#include <string>
 #include <thread>
 #include <vector>
 

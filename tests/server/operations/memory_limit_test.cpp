@@ -2,12 +2,7 @@
 
 #include "server/operations/memory_limit.h"
 
-#include <gtest/gtest.h>
-
-#include <atomic>
-#include <vector>
-
-#include "tests/server/fixture/session_fixture.h"
+#include "tests/server/fixture/host.h"
 
 namespace vat::test::memory_limit_test {
 namespace {
@@ -35,14 +30,6 @@ TEST(MemoryLimit, HoldsAtItsValueAndNotBeyond) {
 class LimitedMemory : public testing::Test {
  protected:
   static constexpr std::size_t kMaximum = 1000;
-  LimitedMemory() {
-    if (!server.create_session("first", to_scene(mixed_scene_text()))) {
-      throw std::runtime_error("the first session was refused");
-    }
-    client.emplace(server, 1);
-    client->result("session.join");
-    client->result("control.pause");
-  }
   ServerSettings settings() {
     ServerLimits limits = unhurried_limits();
     limits.max_memory = kMaximum;
@@ -51,7 +38,7 @@ class LimitedMemory : public testing::Test {
     return settings;
   }
   void expect_refused(const char* method, const Json& params) {
-    const Json error = client->error(method, params);
+    const Json error = client.error(method, params);
     EXPECT_EQ(error.at("code"), 1005) << method;
     EXPECT_EQ(error.at("data").at("limit"), "memory_bytes") << method;
     EXPECT_EQ(error.at("data").at("maximum"), kMaximum) << method;
@@ -60,12 +47,13 @@ class LimitedMemory : public testing::Test {
   std::atomic<std::size_t> used{0};
   std::atomic<int> free_checks{0};  // next measurements that return 0
   const Catalogue catalogue = make_catalogue();
-  TestServer server{catalogue, settings()};
-  std::optional<TestClient> client;
+  ManualClock clock;
+  Host host{catalogue, settings(), clock};
+  TestClient& client = *host.client;
 };
 
 TEST_F(LimitedMemory, RefusesNewWorkAndNothingElse) {
-  const std::string hash = client->result("session.hash").at("hash");
+  const std::string hash = host.hash();
   used = kMaximum + 1;
   const Json scene_name{{"scene", "mixed"}};
   expect_refused("session.create", {{"name", "n"}, {"scene", "mixed"}});
@@ -73,22 +61,21 @@ TEST_F(LimitedMemory, RefusesNewWorkAndNothingElse) {
   expect_refused("world.add_body", {{"body", Json::object()}});
   expect_refused("session.save", {{"name", "n"}});
   expect_refused("state.query", Json::object());
-  EXPECT_EQ(client->result("session.hash").at("hash"), hash);
-  client->result("control.step");
-  client->result("session.list");
-  TestClient other(server, 2);
+  EXPECT_EQ(host.hash(), hash);
+  client.result("control.step");
+  client.result("session.list");
+  TestClient other(host.server, 2);
   other.result("session.join");
   used = kMaximum;
-  client->result("scene.load", scene_name);
-  const std::string created =
-      client->result("session.create", {{"name", "n"}, {"scene", "mixed"}}).at("session");
+  client.result("scene.load", scene_name);
+  const std::string created = client.create_session();
   used = kMaximum + 1;
-  client->result("session.close", {{"session", created}});
+  client.result("session.close", {{"session", created}});
 }
 
 // The memory of a scene is known only when its simulation exists.
 TEST_F(LimitedMemory, RefusesASceneThatIsTooLarge) {
-  const std::string hash = client->result("session.hash").at("hash");
+  const std::string hash = host.hash();
   used = kMaximum + 1;
   for (const auto& [method, params] :
        {std::pair<const char*, Json>("scene.load", {{"scene", "unstable"}}),
@@ -97,7 +84,7 @@ TEST_F(LimitedMemory, RefusesASceneThatIsTooLarge) {
     expect_refused(method, params);
     EXPECT_EQ(free_checks, -1) << "a second check";
   }
-  EXPECT_EQ(client->result("session.hash").at("hash"), hash);
+  EXPECT_EQ(host.hash(), hash);
 }
 
 }  // namespace

@@ -34,9 +34,6 @@ TEST(SceneSpeed, MeasuresTheFirstLevelAndDerivesTheOthersFromTheEstimates) {
   EXPECT_DOUBLE_EQ(factors[0], 8);
   EXPECT_DOUBLE_EQ(factors[1], 4);
   EXPECT_DOUBLE_EQ(factors[2], 2);
-}
-
-TEST(SceneSpeed, WithoutLevelsMeasuresNothing) {
   EXPECT_TRUE(real_time_factors({}, [](const Scene&) -> Real { throw "measured"; }).empty());
 }
 

@@ -1,11 +1,5 @@
 #include "server/operations/slow_ticks.h"
 
-#include <gtest/gtest.h>
-
-#include <string>
-#include <vector>
-
-#include "protocol/json/json_reader.h"
 #include "tests/server/fixture/session_fixture.h"
 
 namespace vat::test::slow_ticks_test {

@@ -61,8 +61,7 @@ TEST_F(SessionParticipants, MayHaveALowerRoleThanTheirs) {
   EXPECT_EQ(guest->result("session.join", {{"role", "viewer"}}).at("role"), "viewer");
   EXPECT_EQ(guest->error("control.play").at("code"), 1006);
   EXPECT_EQ(guest->result("session.join", {{"role", "controller"}}).at("role"), "controller");
-  const Json own = guest->result("session.create", {{"name", "n"}, {"scene", "mixed"}});
-  const Json session = own.at("session");
+  const std::string session = guest->create_session();
   const Json watching = guest->result("session.join", {{"session", session}, {"role", "viewer"}});
   EXPECT_EQ(watching.at("role"), "viewer");
   EXPECT_EQ(guest->result("session.join", {{"session", session}}).at("role"), "owner")
@@ -71,8 +70,7 @@ TEST_F(SessionParticipants, MayHaveALowerRoleThanTheirs) {
 
 TEST_F(SessionParticipants, CannotRequestAHigherRole) {
   const auto owner = connect();
-  const Json session =
-      owner->result("session.create", {{"name", "n"}, {"scene", "mixed"}}).at("session");
+  const std::string session = owner->create_session();
   owner->result("session.join", {{"session", session}});
   owner->result("session.configure", {{"default_role", "viewer"}});
   const auto guest = connect();
@@ -95,6 +93,8 @@ TEST_F(SessionParticipants, HaveNamesThatCanBeShown) {
   for (const char* name : {"<b>x</b>", "名前", "naïve café", "🌊"}) {
     EXPECT_EQ(guest->result("session.join", {{"name", name}}).at("name"), name);
   }
+  EXPECT_EQ(guest->error("participant.rename", {{"name", "\u202e"}}).at("data").at("path"),
+            "/name");
 }
 
 TEST_F(SessionParticipants, AreResumedWithAllThatTheyHad) {
@@ -146,30 +146,19 @@ TEST_F(SessionParticipants, StayTheSameOnTheirOwnConnectionToo) {
   EXPECT_EQ(guest->connection->close_code(), std::nullopt);
 }
 
-TEST_F(SessionParticipants, AnUnknownTokenCreatesANewParticipant) {
+TEST_F(SessionParticipants, AnotherTokenCreatesANewParticipant) {
+  const std::string second = client->create_session();
   const auto guest = connect();
-  const Json joined = guest->result("session.join", {{"resume", "AAAAAAAAAAAAAAAAAAAAAA"}});
-  EXPECT_EQ(joined.at("participant"), 2);
-  EXPECT_EQ(joined.at("resumed"), false);
-  EXPECT_NE(joined.at("resume"), "AAAAAAAAAAAAAAAAAAAAAA");
-}
-
-TEST_F(SessionParticipants, AParticipantThatLeftIsNotResumed) {
-  const auto guest = connect();
-  const Json joined = guest->result("session.join");
+  const auto join_with = [&](const std::string& session, const std::string& token) {
+    const Json joined = guest->result("session.join", {{"session", session}, {"resume", token}});
+    EXPECT_EQ(joined.at("resumed"), false);
+    EXPECT_NE(joined.at("resume"), token);
+    return joined.at("resume").get<std::string>();
+  };
+  const std::string first = join_with("s1", "AAAAAAAAAAAAAAAAAAAAAA");
   guest->result("session.leave");
-  EXPECT_EQ(guest->result("session.join", resume_params(joined)).at("resumed"), false);
-}
-
-TEST_F(SessionParticipants, ATokenIsOfOneSession) {
-  client->result("session.create", {{"name", "second"}, {"scene", "mixed"}});
-  const auto guest = connect();
-  const Json joined = guest->result("session.join", {{"session", "s1"}});
-  guest->disconnect();
-  const auto next = connect();
-  const Json other =
-      next->result("session.join", {{"session", "s2"}, {"resume", joined.at("resume")}});
-  EXPECT_EQ(other.at("resumed"), false);
+  const std::string next = join_with("s1", first);  // a participant that left
+  join_with(second, next);                          // a participant of another session
 }
 
 TEST_F(AwayForAMoment, LeaveAndReleaseTheirGrabs) {

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "protocol/recording/recording_writer.h"
 #include "server/recording/resume_state.h"
 #include "tests/support/scenes.h"
@@ -160,23 +162,20 @@ TEST_F(RecordingFileTest, DamagedOrCutStateIsRefused) {
 TEST(RecordingOrder, NamesTheOptionThatDiffers) {
   const RecordingOrder order = make_state().order;
   EXPECT_TRUE(check_same(order, order).ok());
-  const auto message_of = [&order](auto change) {
+  const auto difference = [&order](const std::function<void(RecordingOrder&)>& change) {
     RecordingOrder other = order;
     change(other);
     const Status same = check_same(order, other);
     return same ? std::string() : same.errors()[0].message;
   };
-  EXPECT_THAT(message_of([](RecordingOrder& other) { other.program = "0.2"; }), HasSubstr("0.1.0"));
-  EXPECT_THAT(message_of([](RecordingOrder& other) { other.scene = "[]"; }), HasSubstr("scene"));
-  EXPECT_THAT(message_of([](RecordingOrder& other) { other.instruction_set = "avx512"; }),
+  EXPECT_THAT(difference([](auto& other) { other.program = "0.2"; }), HasSubstr("0.1.0"));
+  EXPECT_THAT(difference([](auto& other) { other.scene = "[]"; }), HasSubstr("scene"));
+  EXPECT_THAT(difference([](auto& other) { other.instruction_set = "avx512"; }),
               HasSubstr("--isa (avx2)"));
-  EXPECT_THAT(message_of([](RecordingOrder& other) { other.frame_seconds = 1; }),
-              HasSubstr("--every"));
-  EXPECT_THAT(message_of([](RecordingOrder& other) { other.step = 1; }), HasSubstr("--every"));
-  EXPECT_THAT(message_of([](RecordingOrder& other) { other.max_error.reset(); }),
-              HasSubstr("--max-error"));
-  EXPECT_THAT(message_of([](RecordingOrder& other) { other.key_every = 9; }),
-              HasSubstr("--key-every"));
+  EXPECT_THAT(difference([](auto& other) { other.frame_seconds = 1; }), HasSubstr("--every"));
+  EXPECT_THAT(difference([](auto& other) { other.step = 1; }), HasSubstr("--every"));
+  EXPECT_THAT(difference([](auto& other) { other.max_error.reset(); }), HasSubstr("--max-error"));
+  EXPECT_THAT(difference([](auto& other) { other.key_every = 9; }), HasSubstr("--key-every"));
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+
 #include "core/saved/sealed_bytes.h"
 #include "core/support/byte_io.h"
 
@@ -86,28 +88,19 @@ TEST(RecordingFile, DamagedOrLongerOrNewerIsRefused) {
 }
 
 TEST(RecordingFile, WithPartsOutOfOrderIsRefused) {
-  ASSERT_EQ(place_of(make_recording()), "none");
-  Recording recording = make_recording();
-  recording.log[3].sequence = 6;
-  EXPECT_EQ(place_of(recording), "/log");
-  recording = make_recording();
-  recording.log[3].position = 11;
-  EXPECT_EQ(place_of(recording), "/log");
-  recording = make_recording();
-  recording.log.clear();
-  EXPECT_EQ(place_of(recording), "/log");
-  recording = make_recording();
-  recording.end = 19;
-  EXPECT_EQ(place_of(recording), "/end");
-  recording = make_recording();
-  std::swap(recording.moments[0], recording.moments[1]);
-  EXPECT_EQ(place_of(recording), "/moments");
-  recording = make_recording();
-  recording.hashes[1].position = 31;
-  EXPECT_EQ(place_of(recording), "/hashes");
-  recording = make_recording();
-  recording.hashes[1].sequence = 5;
-  EXPECT_EQ(place_of(recording), "/hashes");
+  const auto place_after = [](const std::function<void(Recording&)>& change) {
+    Recording recording = make_recording();
+    change(recording);
+    return place_of(recording);
+  };
+  EXPECT_EQ(place_after([](Recording&) {}), "none");
+  EXPECT_EQ(place_after([](Recording& r) { r.log[3].sequence = 6; }), "/log");
+  EXPECT_EQ(place_after([](Recording& r) { r.log[3].position = 11; }), "/log");
+  EXPECT_EQ(place_after([](Recording& r) { r.log.clear(); }), "/log");
+  EXPECT_EQ(place_after([](Recording& r) { r.end = 19; }), "/end");
+  EXPECT_EQ(place_after([](Recording& r) { std::swap(r.moments[0], r.moments[1]); }), "/moments");
+  EXPECT_EQ(place_after([](Recording& r) { r.hashes[1].position = 31; }), "/hashes");
+  EXPECT_EQ(place_after([](Recording& r) { r.hashes[1].sequence = 5; }), "/hashes");
 }
 
 // A log without its older entries needs a moment at which it starts.

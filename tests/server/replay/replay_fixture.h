@@ -1,13 +1,5 @@
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <atomic>
-#include <cstdint>
-#include <optional>
-#include <string>
-#include <utility>
-
 #include "server/http/downloads.h"
 #include "server/replay/replay_player.h"
 #include "tests/server/fixture/session_fixture.h"
@@ -18,14 +10,15 @@ namespace vat::test {
 
 inline const std::atomic<bool> kGoOn = false;
 
-/// A server that stores its one session, and the environment of a replay outside the server.
+/// A server that stores the session `s1` of Ann, and the environment of a replay outside the
+/// server.
 class ReplayTest : public testing::Test {
  protected:
   explicit ReplayTest(const ServerLimits& limits = {}, const StorageSettings& storage = {})
       : catalogue_(make_catalogue()), server_(catalogue_, settings(limits, storage)) {
     EXPECT_TRUE(server_.create_session("first", to_scene(mixed_scene_text())).ok());
     client_.emplace(server_, 1);
-    client_->result("session.join");
+    client_->result("session.join", {{"name", "Ann"}});
     client_->result("control.pause");
     client_->result("control.reset");
     elsewhere_.limits.max_particles = elsewhere_.limits.max_particle_steps_per_tick = 1'000'000'000;
@@ -36,10 +29,9 @@ class ReplayTest : public testing::Test {
   void live() {
     step(5);
     client_->result("world.set_gravity", {{"gravity", {1, 0, -5}}});
-    const Json grab =
-        client_->result("grab.start", {{"body", 2}, {"particle", 0}, {"target", {0.5, 0.5, 0.8}}});
+    const std::uint64_t grab = client_->grab(2);
     step(3);
-    client_->result("grab.move", {{"grab", grab.at("grab")}, {"target", {0.4, 0.5, 0.9}}});
+    client_->result("grab.move", {{"grab", grab}, {"target", {0.4, 0.5, 0.9}}});
     step(4);
     client_->error("grab.start", {{"body", 77}, {"particle", 0}, {"target", {0, 0, 0}}});
     edit();
@@ -54,7 +46,7 @@ class ReplayTest : public testing::Test {
     client_->result("world.apply_force", {{"body", 3}, {"force", {0, 0, 9}}, {"duration", 0.1}});
     TestClient other(server_, 2);
     other.result("session.join", {{"session", "s1"}});
-    other.result("grab.start", {{"body", 3}, {"particle", 0}, {"target", {0.5, 0.5, 1}}});
+    other.grab(3);
     step(3);
     other.result("session.leave");
     step(7);
@@ -89,30 +81,27 @@ class ReplayTest : public testing::Test {
   static constexpr std::uint64_t kTicks = kGrown + 2 + 3 + 7;
 
   void add(const std::string& name, double x) {
-    client_->result("world.add_body", {{"body",
-                                        {{"name", name},
-                                         {"kind", "rigid"},
-                                         {"material", "wood"},
-                                         {"spacing", 0.1},
-                                         {"position", {x, 0.7, 0.85}},
-                                         {"shape", {{"type", "sphere"}, {"radius", 0.1}}}}}});
+    Json ball = wooden_ball(name, {x, 0.7, 0.85});
+    ball["shape"]["radius"] = 0.1;
+    client_->result("world.add_body", {{"body", ball}});
   }
   void step(int ticks) { client_->result("control.step", {{"ticks", ticks}}); }
   std::string live_hash() { return client_->result("session.hash").at("hash"); }
 
-  Recording record() {
-    const Json exported = client_->result("recording.export");
-    const std::string path = exported.at("path");
-    auto file = server_.downloads().take(path, server_.clock().now());
-    EXPECT_TRUE(file.has_value());
+  /// Returns the content of an exported recording. Its file can be fetched once.
+  std::string exported() {
+    const Json reply = client_->result("recording.export");
+    const std::string path = reply.at("path");
+    const auto file = server_.downloads().take(path, server_.clock().now()).value();
     EXPECT_FALSE(server_.downloads().take(path, server_.clock().now()).has_value());
-    EXPECT_EQ(exported.at("bytes"), file->content.size());
-    EXPECT_EQ(file->name, "s1.vatrec");
-    const std::string& bytes = file->content;
-    Result<Recording> recording =
-        read_recording({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
-    EXPECT_TRUE(recording.ok());
-    return std::move(recording).value();
+    EXPECT_EQ(reply.at("bytes"), file.content.size());
+    EXPECT_EQ(file.name, "s1.vatrec");
+    return file.content;
+  }
+  Recording record() {
+    const std::string bytes = exported();
+    return read_recording({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()})
+        .value();
   }
 
   /// A recording being played.

@@ -2,12 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <chrono>
-#include <string>
-#include <vector>
-
-#include "server/http/downloads.h"
-#include "server/replay/replay_player.h"
 #include "tests/server/replay/replay_fixture.h"
 
 namespace vat::test::replay_limits_test {

@@ -1,10 +1,5 @@
 // The number of ticks that a seek in a recording repeats.
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <atomic>
-#include <chrono>
 #include <set>
 
 #include "server/history/recorder.h"

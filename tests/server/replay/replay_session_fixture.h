@@ -1,17 +1,8 @@
 #pragma once
 
-#include <gtest/gtest.h>
 #include <openssl/evp.h>
 
-#include <map>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "server/history/recording.h"
-#include "server/http/downloads.h"
-#include "tests/server/fixture/session_fixture.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/server/replay/replay_fixture.h"
 
 namespace vat::test {
 
@@ -27,44 +18,42 @@ inline std::string to_base64(const std::string& bytes) {
 inline constexpr std::size_t kMaxParticlesOfSession = 5000;
 
 /// A stored session `s1` in which Ann has sent commands, and a client that watches.
-class ReplaySession : public testing::Test {
+class ReplaySession : public ReplayTest {
  protected:
-  ReplaySession() : catalogue_(make_catalogue()), server_(catalogue_, settings()) {
-    EXPECT_TRUE(server_.create_session("first", to_scene(mixed_scene_text())).ok());
-    ann_.emplace(server_, 1);
-    ann_->result("session.join", {{"name", "Ann"}});
-    ann_->result("control.pause");
-    ann_->result("control.reset");
-    position_ = ann_->result("session.hash").at("position");
+  ReplaySession() : ReplayTest(limits()) {
+    position_ = client_->result("session.hash").at("position");
     first_ = position_;
   }
-  void TearDown() override { ann_->disconnect(); }
+  static ServerLimits limits() {
+    ServerLimits limits = unhurried_limits();
+    limits.max_particles = kMaxParticlesOfSession;
+    return limits;
+  }
 
   /// Runs the session and notes the hash of every position. The session ends at tick 11 of its
   /// second run.
   void live() {
     note();
     step(3);
-    const Json grab =
-        ann_->result("grab.start", {{"body", 2}, {"particle", 0}, {"target", {0.5, 0.5, 0.8}}});
+    const std::uint64_t grab = client_->grab(2);
     note();
     step(4);
-    ann_->result("grab.end", {{"grab", grab.at("grab")}});
-    ann_->result("world.set_gravity", {{"gravity", {1, 0, -5}}});
+    client_->result("grab.end", {{"grab", grab}});
+    client_->result("world.set_gravity", {{"gravity", {1, 0, -5}}});
     note();
     step(5);
-    ann_->result("control.reset");
+    client_->result("control.reset");
     note();
     step(11);
   }
   void step(int ticks) {
     for (int i = 0; i < ticks; ++i) {
-      ann_->result("control.step");
+      client_->result("control.step");
       ++position_;
       note();
     }
   }
-  void note() { hashes_[position_] = ann_->result("session.hash").at("hash"); }
+  void note() { hashes_[position_] = client_->result("session.hash").at("hash"); }
 
   /// Opens the replay, lets `bob_` join it, and returns the result of replay.open.
   Json open(const Json& params = {{"session", "s1"}}) {
@@ -80,14 +69,6 @@ class ReplaySession : public testing::Test {
   }
   std::string hash() { return bob_->result("session.hash").at("hash"); }
 
-  std::string exported() {
-    const std::string path = ann_->result("recording.export").at("path");
-    return server_.downloads().take(path, server_.clock().now())->content;
-  }
-  static Recording read(const std::string& bytes) {
-    return read_recording({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()})
-        .value();
-  }
   /// Uploads a file in parts of `part` bytes. Returns the reply to the last part.
   Json import(TestClient& client, const std::string& file, std::size_t part = 3'000'000) {
     Json last;
@@ -108,23 +89,11 @@ class ReplaySession : public testing::Test {
   /// Expects that the replay shows every noted state.
   void expect_states() {
     for (const auto& [position, expected] : hashes_) {
-      seek(position);
+      EXPECT_EQ(seek(position).at("position"), position);
       ASSERT_EQ(hash(), expected) << position;
     }
   }
 
- private:
-  ServerSettings settings() const {
-    ServerLimits limits = unhurried_limits();
-    limits.max_particles = kMaxParticlesOfSession;
-    return test_settings(limits, folder_.file("data"));
-  }
-
- protected:
-  const TemporaryFolder folder_;
-  const Catalogue catalogue_;
-  TestServer server_;
-  std::optional<TestClient> ann_;
   std::optional<TestClient> bob_;
   Json joined_;
   std::uint64_t first_ = 0;

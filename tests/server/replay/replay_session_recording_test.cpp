@@ -2,13 +2,8 @@
 
 #include <gmock/gmock.h>
 
-#include <algorithm>
-#include <string>
-#include <vector>
-
 #include "server/history/recording.h"
 #include "server/session/core/scene_loading.h"
-#include "tests/server/fixture/session_fixture.h"
 #include "tests/server/replay/replay_session_fixture.h"
 
 namespace vat::test::replay_session_recording_test {
@@ -62,7 +57,7 @@ TEST_F(ReplaySession, RefusesFilesThatAreNoRecordings) {
 /// log.
 TEST_F(ReplaySession, RefusesManipulatedRecordings) {
   live();
-  Recording recording = read(exported());
+  Recording recording = record();
   recording.name = "\xff\xfe";
   recording.moments.clear();
   const auto gravity = std::ranges::find(recording.log, "world.set_gravity", &LogEntry::method);
@@ -90,7 +85,7 @@ TEST_F(ReplaySession, UnpacksNoMoreThanASessionMayBe) {
   const std::size_t most = max_state_bytes(limits);
   ASSERT_LT(most, std::size_t{1} << 30);
   const auto reason = [&](const Recording& recording) -> std::string {
-    const Json whole = import(*ann_, recording);
+    const Json whole = import(*client_, recording);
     bob_->result("session.join", {{"session", "s1"}});
     const Json opened = bob_->result("replay.open", {{"recording", whole.at("recording")}});
     bob_->result("session.join", {{"session", opened.at("session")}});
@@ -101,7 +96,7 @@ TEST_F(ReplaySession, UnpacksNoMoreThanASessionMayBe) {
   };
   bob_.emplace(server_, 2);
   for (const std::uint32_t more : {0, 1}) {
-    Recording recording = read(exported());
+    Recording recording = record();
     recording.moments.back().state = bytes_that_say(static_cast<std::uint32_t>(most) + more);
     const std::string told = reason(recording);
     EXPECT_EQ(told.find("too large") != std::string::npos, more == 1) << told;
@@ -110,7 +105,7 @@ TEST_F(ReplaySession, UnpacksNoMoreThanASessionMayBe) {
 
 TEST_F(ReplaySession, ShowsAnyNameAsText) {
   live();
-  Recording recording = read(exported());
+  Recording recording = record();
   recording.name = std::string(200, 'n');
   for (RecordedMoment& moment : recording.moments) {
     Json fields = Json::parse(moment.fields);
@@ -130,7 +125,7 @@ TEST_F(ReplaySession, ShowsAnyNameAsText) {
 
 TEST_F(ReplaySession, RefusesRecordingsThatAreTooLong) {
   live();
-  Recording recording = read(exported());
+  Recording recording = record();
   recording.moments.clear();
   TestClient carl(server_, 3);
   const auto limit_of = [&](const Recording& one) {

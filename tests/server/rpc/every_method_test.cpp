@@ -2,11 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <algorithm>
-#include <map>
-#include <string>
-#include <vector>
-
 #include "server/rpc/method_table.h"
 #include "tests/server/fixture/access_fixture.h"
 
@@ -85,8 +80,7 @@ class EveryMethod : public AccessTest {
   Cast cast(Role role) {
     Cast cast;
     cast.owner = enter(ticket({{"role", "controller"}}));
-    const Json created = cast.owner->result("session.create", {{"name", "n"}, {"scene", "mixed"}});
-    cast.session = created.at("session");
+    cast.session = cast.owner->create_session();
     joined = cast.owner->result("session.join", {{"session", cast.session}});
     EXPECT_EQ(joined.at("role"), "owner");
     if (role == Role::owner) {

@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <set>
 #include <sstream>
 
@@ -24,7 +23,8 @@ const std::vector<Limit>& limit_table() {
       {"connections_per_address", "max_connections_per_address",
        "TransportHostileTest.AnAddressHasItsShareOfTheConnections"},
       {"sessions", "max_sessions", "AdmissionRace.ForTheLastSessions"},
-      {"sessions_per_address", "max_sessions_per_address", "SessionLimits.SessionsOfAnAddress"},
+      {"sessions_per_address", "max_sessions_per_address",
+       "AbandonedSession.MakeRoomForNewOnesOfTheirAddress"},
       {"clients_per_session", "max_clients", "AdmissionRace.ForTheLastPlacesOfASession"},
       {"particles", "max_particles", "SceneLimits.HoldAtTheirValueAndNotBeyond"},
       {"springs", "max_springs", "SceneLimits.HoldAtTheirValueAndNotBeyond"},
@@ -53,16 +53,15 @@ const std::vector<Limit>& limit_table() {
       {"session_read_seconds_per_second", "max_session_read_seconds_per_second",
        "ReadBudget.IsExceededByBytesOrByTime"},
       {"message_bytes_per_second", "max_message_bytes_per_second",
-       "MessageMeter.BytesAreCountedBeforeAMessageIsRead"},
+       "MessageMeter.BytesAndRefusalsAreLimited"},
       {"burst_seconds", "burst_seconds", "MessageMeter.EachClassHasItsOwnLimit"},
-      {"refusals_per_second", "max_refusals_per_second",
-       "MessageMeter.RefusedMessagesBeyondTheirLimitAreAFlood"},
-      {"grabs_per_client", "max_grabs", "SessionGrabs.OfAClientAreAtMostTen"},
-      {"grabs_per_session", nullptr, "SessionGrabs.OfASessionAreAtMostSixtyFour"},
+      {"refusals_per_second", "max_refusals_per_second", "MessageMeter.BytesAndRefusalsAreLimited"},
+      {"grabs_per_client", "max_grabs", "SessionGrabs.OfAClientAreAtMostTenAndOfASessionSixtyFour"},
+      {"grabs_per_session", nullptr, "SessionGrabs.OfAClientAreAtMostTenAndOfASessionSixtyFour"},
       {"applied_forces", nullptr, "SessionGrabs.ForcesOfASessionAreBoundedToo"},
       {"bodies", nullptr, "FixedLimits.BodiesOfAScene"},
-      {"name_bytes", nullptr, "NameAndTickLimits.HoldAtTheirValueAndNotBeyond"},
-      {"ticks_per_step", nullptr, "NameAndTickLimits.HoldAtTheirValueAndNotBeyond"},
+      {"name_bytes", nullptr, "GoodParameters.TheEndsOfTheRangesAreAllowed"},
+      {"ticks_per_step", nullptr, "GoodParameters.TheEndsOfTheRangesAreAllowed"},
       {"frame_window", nullptr, "Outbox.TakesThreeFramesThatAreNotAcknowledged"},
       {"frame_groups", nullptr, "FrameDeliveryTest.EveryViewerHasATurnWithTooManyGroups"},
       {"frame_patience_seconds", "frame_patience_seconds",

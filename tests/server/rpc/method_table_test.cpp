@@ -9,8 +9,11 @@
 #include <regex>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "protocol/json/json_reader.h"
+#include "server/messages/error_table.h"
+#include "server/messages/rpc_message.h"
 #include "server/rpc/method_table.h"
 
 namespace vat::test::method_table_test {
@@ -56,10 +59,6 @@ Names documented_methods(const std::string& begin) {
   return matches(text.substr(after, text.find('\n', after) - after), "`([a-z_]+\\.[a-z_*]+)`");
 }
 
-TEST(MethodTable, HasUniqueNames) {
-  EXPECT_EQ(all_names().size(), all_methods().size());
-}
-
 TEST(MethodTable, AsyncApiHasItsMethods) {
   const Json document = Json::parse(read_file("protocol/asyncapi.json"));
   const Json& messages = document.at("components").at("messages");
@@ -68,6 +67,7 @@ TEST(MethodTable, AsyncApiHasItsMethods) {
     if (operation.at("action") == "receive") operations.insert(name);
   }
   EXPECT_EQ(operations, all_names());
+  EXPECT_EQ(operations.size(), all_methods().size()) << "unique names";
   for (const Method& method : all_methods()) {
     const std::string name(method.row.name);
     const std::string schemas = "schemas/" + method.row.schema_file() + "#/$defs/" + name;
@@ -132,6 +132,74 @@ TEST(MethodTable, OnlyMethodsOfASessionAreLogged) {
     if (!method.row.is_logged()) continue;
     EXPECT_EQ(method.row.role_source, RoleSource::participant) << method.row.name;
     EXPECT_GE(method.row.least_role, Role::controller) << method.row.name;
+  }
+}
+
+// The table of errors, and protocol/schemas/errors.json.
+
+TEST(Schemas, HaveTheErrorsOfTheTable) {
+  std::ifstream file(VAT_SOURCE_DIR "/protocol/schemas/errors.json");
+  const Json errors = Json::parse(file).at("$defs");
+  std::size_t listed = 0;
+  for (const ErrorRow& row : error_rows()) {
+    const std::string name(row.name);
+    ASSERT_TRUE(errors.contains(name)) << "protocol/schemas/errors.json lacks " << name;
+    const Json& properties = errors.at(name).at("properties");
+    EXPECT_EQ(properties.at("code").at("const"), row.code) << name;
+    EXPECT_EQ(properties.at("data").at("properties").at("kind").at("const"), name);
+    for (const Json& choice : errors.at("reply_error").at("oneOf")) {
+      if (choice.at("$ref") == "#/$defs/" + name) ++listed;
+    }
+  }
+  EXPECT_EQ(listed, error_rows().size());
+  EXPECT_EQ(errors.at("reply_error").at("oneOf").size(), error_rows().size());
+}
+
+/// Returns "code kind hint" of each row of PROTOCOL.md's table of errors.
+std::vector<std::string> documented_rows() {
+  std::ifstream document(VAT_SOURCE_DIR "/protocol/PROTOCOL.md");
+  static const std::regex kRow(R"(\| (-?\d+) \| `(\w+)` \| .* \| (.+) \|)");
+  std::vector<std::string> rows;
+  std::string line;
+  bool inside = false;
+  while (std::getline(document, line)) {
+    if (line.starts_with("| code | `data.kind`")) inside = true;
+    if (inside && line.empty()) break;
+    std::smatch cells;
+    if (inside && std::regex_match(line, cells, kRow)) {
+      rows.push_back(cells.str(1) + ' ' + cells.str(2) + ' ' + cells.str(3));
+    }
+  }
+  return rows;
+}
+
+TEST(ErrorTable, IsTheOneOfTheDocument) {
+  std::vector<std::string> rows;
+  for (const ErrorRow& row : error_rows()) {
+    rows.push_back(std::to_string(row.code) + ' ' + std::string(row.name) + ' ' +
+                   std::string(row.hint));
+  }
+  EXPECT_EQ(rows, documented_rows());
+}
+
+TEST(ErrorTable, CodesAndNamesAreUnique) {
+  std::set<int> codes;
+  std::set<std::string_view> names;
+  for (const ErrorRow& row : error_rows()) {
+    EXPECT_TRUE(codes.insert(row.code).second) << row.code;
+    EXPECT_TRUE(names.insert(row.name).second) << row.name;
+    EXPECT_TRUE(row.hint.ends_with('.')) << row.hint;
+  }
+}
+
+TEST(ErrorTable, AReplyCarriesTheRowAndThePath) {
+  for (const ErrorRow& row : error_rows()) {
+    const RpcError error{row.kind, "why", {{"path", "/x"}}};
+    const Json data{{"path", "/x"}, {"kind", row.name}, {"hint", row.hint}};
+    EXPECT_EQ(Json::parse(write_reply(7, error)),
+              Json({{"jsonrpc", "2.0"},
+                    {"id", 7},
+                    {"error", {{"code", row.code}, {"message", "why"}, {"data", data}}}}));
   }
 }
 

@@ -16,16 +16,16 @@ struct BadParams {
 
 const std::vector<BadParams>& bad_params() {
   static const std::string kTooLong(65, 'n');
+  static const std::string kBody =
+      R"({"body":{"name":"b","kind":"rigid","material":"wood","spacing":0.1,
+        "shape":{"type":"sphere","radius":0.1},"position":[0.3,0.7,0.8]},"state":)";
   static const std::vector<BadParams> kCases = {
       {"session.create", R"({"scene":"mixed"})", "/name", "must be given"},
       {"session.create", R"({"name":"n"})", "/scene", "must be given"},
-      {"session.create", R"({"name":7,"scene":"mixed"})", "/name", "text of at most 64 bytes"},
       {"session.create", R"({"name":")" + kTooLong + R"(","scene":"mixed"})", "/name",
        "text of at most 64 bytes"},
       {"session.create", R"({"name":"a\u0007b","scene":"mixed"})", "/name", "control characters"},
-      {"session.create", R"({"name":"n","scene":7})", "/scene", "must be an object"},
       {"session.create", R"({"name":"n","scene":{}})", "/scene/format", "must be given"},
-      {"session.join", R"({"session":1})", "/session", "text of at most 64 bytes"},
       {"session.close", "{}", "/session", "must be given"},
       {"scene.load", "{}", "/scene", "must be given"},
       {"scene.load", R"({"scene":[]})", "/scene", "must be an object"},
@@ -57,19 +57,14 @@ const std::vector<BadParams>& bad_params() {
       {"world.add_body", R"({"body":{"name":"b","kind":"rigid","material":"wood","spacing":0,
         "shape":{"type":"sphere","radius":0.15},"position":[0.5,0.5,0.5]}})",
        "/body/spacing", "1e-06"},
-      {"world.add_body", R"({"body":{"name":"b","kind":"rigid","material":"wood","spacing":0.1,
-        "shape":{"type":"sphere","radius":0.1},"position":[0.3,0.7,0.8]},"state":[]})",
-       "/state", ""},
-      {"world.add_body", R"({"body":{"name":"b","kind":"rigid","material":"wood","spacing":0.1,
-        "shape":{"type":"sphere","radius":0.1},"position":[0.3,0.7,0.8]},"state":{"center_of_mass":[0.3,0.7,0.8],"orientation":[1,0,0,0],
+      {"world.add_body", kBody + R"([]})", "/state", ""},
+      {"world.add_body", kBody + R"({"center_of_mass":[0.3,0.7,0.8],"orientation":[1,0,0,0],
         "angular_velocity":[0,0,0]}})",
        "/state/velocity", "must be given"},
-      {"world.add_body", R"({"body":{"name":"b","kind":"rigid","material":"wood","spacing":0.1,
-        "shape":{"type":"sphere","radius":0.1},"position":[0.3,0.7,0.8]},"state":{"center_of_mass":[0.3,0.7,0.8],"orientation":[1,0,0,0],
+      {"world.add_body", kBody + R"({"center_of_mass":[0.3,0.7,0.8],"orientation":[1,0,0,0],
         "angular_velocity":[0,0,0],"velocity":[0,0,0],"colour":1}})",
        "/state/colour", "not a known"},
-      {"world.add_body", R"({"body":{"name":"b","kind":"rigid","material":"wood","spacing":0.1,
-        "shape":{"type":"sphere","radius":0.1},"position":[0.3,0.7,0.8]},"state":{"center_of_mass":[0.3,0.7,50],"orientation":[1,0,0,0],
+      {"world.add_body", kBody + R"({"center_of_mass":[0.3,0.7,50],"orientation":[1,0,0,0],
         "velocity":[0,0,0],"angular_velocity":[0,0,0]}})",
        "/state", ""},
       {"world.remove_body", "{}", "/body", "must be given"},
@@ -78,7 +73,6 @@ const std::vector<BadParams>& bad_params() {
       {"world.melt_body", R"({"body":3,"material":"water"})", "/body", "only a deformable body"},
       {"world.set_emitter", R"({"emitter":"tap"})", "/open", "must be given"},
       {"world.set_emitter", R"({"emitter":"tap","open":true})", "/emitter", "scene's emitters"},
-      {"world.set_gravity", R"({"gravity":9.81})", "/gravity", "[x, y, z]"},
       {"world.set_gravity", R"({"gravity":[0,0]})", "/gravity", "[x, y, z]"},
       {"world.set_gravity", R"({"gravity":[0,0,-1001]})", "/gravity", "at most 1000"},
       {"world.set_interface", R"({"interface":{"materials":["water","gold"],"stiffness":1}})",
@@ -117,8 +111,6 @@ const std::vector<BadParams>& bad_params() {
       {"world.set_numerics", R"({"divergence_tolerance":0})", "/divergence_tolerance", ""},
       {"world.set_numerics", "{}", "/integrator", "must be given, unless another member is given"},
       {"world.remove_body", R"({"body":"ball"})", "/body", "the id of a body, not a name"},
-      {"grab.start", R"({"body":true,"particle":0,"target":[0,0,0]})", "/body",
-       "the id or the name of a body"},
       {"grab.start", R"({"body":3,"particle":0})", "/target", "must be given"},
       {"grab.start", R"({"body":3,"particle":-1,"target":[0,0,0]})", "/particle", "from 0"},
       {"grab.start", R"({"body":3,"particle":100000,"target":[0,0,0]})", "/particle",
@@ -142,7 +134,6 @@ const std::vector<BadParams>& bad_params() {
       {"frames.ack", "{}", "/number", "must be given"},
       {"frames.ack", R"({"number":0})", "/number", "from 1 to"},
       {"frames.ack", R"({"number":1})", "/number", "a frame that was sent"},
-      {"state.query", R"({"bodies":"ball"})", "/bodies", "must be a list"},
       {"state.query", R"({"bodies":[true]})", "/bodies/0", "the id or the name of a body"},
       {"state.query", R"({"bodies":["ball",-1]})", "/bodies/1", "from 0 to 4294967295"},
       {"session.save", R"({"name":""})", "/name", ""},
@@ -212,17 +203,12 @@ TEST_F(BadParameters, AreReportedAllAtOnce) {
 
 class GoodParameters : public SessionTest {};
 
-TEST_F(GoodParameters, TheServerDescribesItself) {
-  const Json info = client->result("server.info");
-  EXPECT_EQ(info.at("name"), "vat");
-  EXPECT_EQ(info.at("version"), "1.2.3");
-  EXPECT_EQ(info.at("protocol"), "vat.v1");
-}
-
 TEST_F(GoodParameters, TheEndsOfTheRangesAreAllowed) {
   client->result("control.set_speed", {{"speed", 0.05}});
   client->result("control.set_speed", {{"speed", 4}});
   EXPECT_EQ(client->result("control.step", {{"ticks", 1}}).at("tick"), 1);
+  client->result("control.step", {{"ticks", kMaxTicksPerStep}});
+  client->create_session("mixed", std::string(kMaxNameLength, 'n'));
   client->result("frames.subscribe", {{"every", 1}, {"max_error", 0}});
   client->result("frames.subscribe", {{"every", 100}, {"max_error", 1e6}});
   client->result("world.set_gravity", {{"gravity", {1000, -1000, 0}}});
@@ -251,6 +237,11 @@ TEST_F(GoodParameters, TheStateHasAllThatTheProtocolNames) {
 }
 
 TEST_F(GoodParameters, TheDescriptionHasAllThatTheProtocolNames) {
+  const Json info = client->result("server.info");
+  EXPECT_EQ(info.at("name"), "vat");
+  EXPECT_EQ(info.at("version"), "1.2.3");
+  EXPECT_EQ(info.at("protocol"), "vat.v1");
+  EXPECT_EQ(info.at("access"), "open");
   const Json joined = client->result("session.join");
   EXPECT_EQ(joined.at("session"), "s1");
   const Json& description = joined.at("description");

@@ -1,7 +1,5 @@
 // Replies of the server to every kind of text.
 
-#include <algorithm>
-
 #include "tests/server/fixture/session_fixture.h"
 
 namespace vat::test::session_request_test {

@@ -99,19 +99,15 @@ std::string outcome(const std::vector<const char*>& lines) {
 constexpr const char* kSayReply =
     R"({"send": {"say": [{"jsonrpc": "2.0", "id": 7, "result": {"x": 1}}]}})";
 
-TEST(Player, ARepliedCallIsMet) {
+TEST(Player, CallsMustHaveTheExpectedReply) {
   EXPECT_EQ(outcome({R"({"call": "m", "params": {"x": 1, "y": 2}, "result": {"x": 1}})"}), "");
-}
-
-TEST(Player, AWrongResultIsNamedWithItsLine) {
   EXPECT_EQ(
       outcome({R"({"comment": "c"})", R"({"call": "m", "params": {"x": 2}, "result": {"x": 1}})"}),
       "s:3: at /result/x\n  expected 1\n  came     2");
-}
-
-TEST(Player, AnUnexpectedResultIsAFailure) {
   EXPECT_THAT(outcome({R"({"call": "m", "params": {}, "error": {"code": -32601}})"}),
               StartsWith("s:2: at "));
+  // The reply contains the request's params, so the tick is missing.
+  EXPECT_THAT(outcome({R"({"wait_ticks": 3})"}), HasSubstr("at /result\n  expected a member"));
 }
 
 TEST(Player, RepliesAreTakenByTheirId) {
@@ -217,30 +213,21 @@ TEST(ReadScript, NamesTheLineOfAMistake) {
   }
 }
 
-TEST(ReadDocument, TakesTheExchangeAfterTheHeading) {
+TEST(ReadDocument, TakesTheExchangeOrTheScriptAfterTheHeading) {
   const std::string path = testing::TempDir() + "document.md";
   std::ofstream(path) << "```text\n> {\"no\": 1}\n```\n## Here\nWords.\n```text\n> {\"a\": 1}\n"
-                         "< {\"b\": 2}\n```\n> more\n";
-  const std::vector<Line> lines = read_document(path, "## Here");
+                         "< {\"b\": 2}\n```\n> more\n"
+                         "## Script\n\n```jsonl\n{\"close\": true}\n```\n```jsonl\n{}\n```\n";
+  std::vector<Line> lines = read_document(path, "## Here");
   ASSERT_EQ(lines.size(), 3U);
   EXPECT_EQ(lines[0].action, Json::parse(R"({"connect": "a"})"));
   EXPECT_EQ(lines[1].action, Json::parse(R"({"send": {"a": 1}})"));
   EXPECT_EQ(lines[2].action, Json::parse(R"({"expect": {"b": 2}})"));
   EXPECT_EQ(lines[2].place, "document.md:8");
-  EXPECT_THROW(read_document(path, "## There"), ScriptError);
-}
-
-TEST(ReadDocument, TakesTheScriptAfterTheHeading) {
-  const std::string path = testing::TempDir() + "scripts.md";
-  std::ofstream(path) << "## Here\n\n```jsonl\n{\"close\": true}\n```\n```jsonl\n{}\n```\n";
-  const std::vector<Line> lines = read_document(path, "## Here");
+  lines = read_document(path, "## Script");
   ASSERT_EQ(lines.size(), 1U);
   EXPECT_EQ(lines[0].action, Json::parse(R"({"close": true})"));
-}
-
-TEST(Player, WaitsForTicks) {
-  // The reply contains the request's params, so the tick is missing.
-  EXPECT_THAT(outcome({R"({"wait_ticks": 3})"}), HasSubstr("at /result\n  expected a member"));
+  EXPECT_THROW(read_document(path, "## There"), ScriptError);
 }
 
 }  // namespace

@@ -1,18 +1,7 @@
 // Power failures at many moments of a recorded run: a second server starts on contents that the
 // disk may then have.
 
-#include <gtest/gtest.h>
-
-#include <chrono>
-#include <filesystem>
-#include <map>
-#include <optional>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "server/storage/sqlite/database.h"
-#include "tests/server/fixture/disk_record.h"
 #include "tests/server/fixture/host.h"
 #include "tests/server/fixture/test_disk.h"
 #include "tests/support/temporary_folder.h"
@@ -118,12 +107,7 @@ class RecordedRun {
   }
 
   void add_and_remove(int round) {
-    const Json ball{{"name", "ball " + std::to_string(round)},
-                    {"kind", "rigid"},
-                    {"material", "wood"},
-                    {"spacing", 0.1},
-                    {"shape", {{"type", "sphere"}, {"radius", 0.12}}},
-                    {"position", {0.3, 0.7, 0.8}}};
+    const Json ball = wooden_ball("ball " + std::to_string(round));
     const Json body = execute("world.add_body", {{"body", ball}}).at("body");
     step();
     execute("world.remove_body", {{"body", body}});

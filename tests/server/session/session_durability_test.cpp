@@ -1,15 +1,8 @@
 // Sessions on a slow disk and on a failing disk.
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <chrono>
-#include <memory>
-#include <optional>
-#include <string>
 #include <thread>
-#include <utility>
-#include <vector>
 
 #include "tests/server/fixture/host.h"
 #include "tests/server/fixture/test_disk.h"
@@ -79,6 +72,7 @@ TEST_F(SessionDurability, OnAFailingDiskTheSessionRefusesCommandsAndContinues) {
       {TestDisk::Fault::io_error, "failed"},
       {TestDisk::Fault::sync_error, "failed"},
       {TestDisk::Fault::read_only, "read_only"}};
+  EXPECT_TRUE(has_sample(host->server.metrics(), "vat_storage_failures_total 0"));
   const auto is_failing = [](bool failing) {
     return [failing](const Json& params) { return params.at("failing") == failing; };
   };
@@ -101,8 +95,10 @@ TEST_F(SessionDurability, OnAFailingDiskTheSessionRefusesCommandsAndContinues) {
     client().result("world.set_gravity", {{"gravity", {0, 0, -9}}});
     client().wait_event("session.storage", is_failing(false));
     EXPECT_THAT(host->server.health(), HasSubstr("\"storage\":\"ok\""));
+    EXPECT_THAT(host->server.health(), HasSubstr("\"durability\":\"power\""));
     host->step(1);
   }
+  EXPECT_FALSE(has_sample(host->server.metrics(), "vat_storage_failures_total 0"));
   const std::string last = host->hash();
   host.reset();
   begin();
@@ -154,8 +150,7 @@ TEST_F(SessionDurability, WhileTheDiskIsBlockedOtherSessionsContinue) {
   std::vector<std::string> ids;
   for (int i = 0; i < kBusySessions; ++i) {
     busy.push_back(std::make_unique<TestClient>(server, 10 + i));
-    ids.push_back(
-        busy[i]->result("session.create", {{"name", "busy"}, {"scene", scene}}).at("session"));
+    ids.push_back(busy[i]->create_session(scene, "busy"));
     busy[i]->result("session.join", {{"session", ids[i]}});
     busy[i]->result("control.pause");
     busy[i]->result("session.save", {{"name", "a"}});
@@ -200,10 +195,6 @@ TEST_F(SessionDurability, WhileTheDiskIsBlockedOtherSessionsContinue) {
   EXPECT_FALSE(server.metrics().empty());
   disk.release_syncs();
   for (const auto& [to, id] : waiting) to->wait_reply(id);
-}
-
-TEST_F(SessionDurability, HealthShowsTheSetting) {
-  EXPECT_THAT(host->server.health(), HasSubstr("\"durability\":\"power\""));
 }
 
 TEST_F(SessionDurability, AClosedServerExecutesTheCommandThatItIsStoring) {

@@ -1,11 +1,7 @@
 // The governor of a session: permission, switches, their log entries, replay and recovery.
 
 #include <gmock/gmock.h>
-
-#include <algorithm>
-#include <chrono>
-#include <string>
-#include <vector>
+#include <gtest/gtest.h>
 
 #include "server/session/ticks/governor.h"
 #include "tests/server/replay/replay_fixture.h"
@@ -67,9 +63,8 @@ void pause(TestClient& client) {
 class SessionGovernorTest : public SessionTest {
  protected:
   void SetUp() override {
-    const Json made = client->result("session.create", {{"name", "own"}, {"scene", "mixed"}});
-    own_ = made.at("session");
-    EXPECT_EQ(client->result("session.join", {{"session", own_}}).at("role"), "owner");
+    const std::string own = client->create_session();
+    EXPECT_EQ(client->result("session.join", {{"session", own}}).at("role"), "owner");
   }
   bool fall_behind(std::chrono::milliseconds time = 20s) {
     return session_governor_test::fall_behind(
@@ -82,8 +77,6 @@ class SessionGovernorTest : public SessionTest {
     for (const Json& one : error.at("data").at("errors")) paths.push_back(one.at("path"));
     return paths;
   }
-
-  std::string own_;
 };
 
 TEST_F(SessionGovernorTest, SwitchesToTheCheaperPointAndBack) {
@@ -117,20 +110,9 @@ TEST_F(SessionGovernorTest, DoesNothingWithoutPermission) {
   EXPECT_LT(status.at("real_time_factor"), 0.9);
   EXPECT_FALSE(status.contains("governor"));
   client->result("session.configure", {{"governor", points()}});
+  EXPECT_EQ(client->result("session.configure", {{"locked", true}}).at("governor"), points());
   client->result("session.configure", {{"governor", Json::array()}});
   EXPECT_FALSE(fall_behind()) << "the owner has ended the permission";
-}
-
-TEST_F(SessionGovernorTest, OnlyTheOwnerPermitsIt) {
-  const auto other = join(own_);
-  const Json error = other->error("session.configure", {{"governor", points()}});
-  EXPECT_EQ(error.at("code"), 1006);
-  EXPECT_EQ(error.at("data").at("role"), "controller");
-}
-
-TEST_F(SessionGovernorTest, OtherSettingsKeepThePermission) {
-  client->result("session.configure", {{"governor", points()}});
-  EXPECT_EQ(client->result("session.configure", {{"locked", true}}).at("governor"), points());
 }
 
 TEST_F(SessionGovernorTest, ALoadOfASceneEndsThePermission) {
@@ -200,7 +182,7 @@ TEST_F(SessionGovernorTest, InvalidPointsAreNamed) {
 
 using GovernorReplayTest = ReplayTest;
 
-TEST_F(GovernorReplayTest, ReplaysRepeatTheSwitches) {
+TEST_F(GovernorReplayTest, ReplaysRepeatTheSwitchesWithoutAGovernor) {
   client_->result("access.enter", {{"token", kAdminToken}});
   client_->result("session.join", {{"session", "s1"}});
   client_->result("session.configure", {{"governor", points()}});
@@ -219,10 +201,7 @@ TEST_F(GovernorReplayTest, ReplaysRepeatTheSwitches) {
   replay.player.play_to(replay.core, recording.end, kGoOn);
   EXPECT_EQ(replay.hash(), live_hash());
   EXPECT_GT(replay.compared, 0U);
-}
 
-TEST_F(GovernorReplayTest, AReplayHasNoGovernor) {
-  client_->result("access.enter", {{"token", kAdminToken}});
   const Json opened = client_->result("replay.open", {{"session", "s1"}});
   client_->result("session.join", {{"session", opened.at("session")}});
   const Json error = client_->error("session.configure", {{"governor", points()}});
@@ -233,11 +212,10 @@ using GovernorRecoveryTest = SessionRecoveryTest;
 
 TEST_F(GovernorRecoveryTest, ARecoveredSessionContinuesAtItsPoint) {
   begin();
-  const Json made = client().result("session.create", {{"name", "own"}, {"scene", "mixed"}});
-  Json place{{"session", made.at("session")}};
+  Json place{{"session", client().create_session()}};
   place["resume"] = client().result("session.join", place).at("resume");
   client().result("session.configure", {{"governor", points()}});
-  ASSERT_TRUE(fall_behind(clock, client(), [&] { life->flush(); }));
+  ASSERT_TRUE(fall_behind(clock, client(), [&] { life->server.flush(); }));
   pause(client());
   const std::string before = life->hash();
   clock.advance(1s);  // time after which the present participants are stored
@@ -256,6 +234,119 @@ TEST_F(GovernorRecoveryTest, ARecoveredSessionContinuesAtItsPoint) {
   client().result("session.join", place);
   EXPECT_EQ(life->hash(), later);
   EXPECT_EQ(step_of(client()), kOwnStep);
+}
+
+// The rules by which the governor chooses among the points of a front.
+
+using Choice = std::optional<std::size_t>;
+
+const std::vector<GovernorPoint> kPoints{
+    {{.step = 1e-3}, 1e-4, 0.8}, {{.step = 2e-3}, 1e-3, 0.4}, {{.step = 4e-3}, 1e-2, 0.2}};
+constexpr double kInterval = 0.5;
+
+/// A session that follows the governor.
+class GovernorTest : public testing::Test {
+ protected:
+  /// Returns the seconds until the governor changes the point, or nothing after `most` seconds.
+  std::optional<double> run(bool is_behind, double load, double most = 10'000) {
+    for (double time = kInterval; time <= most; time += kInterval) {
+      const Choice choice = governor.add({kInterval, is_behind, load}, point, kPoints);
+      if (!choice) continue;
+      point = *choice;
+      return time;
+    }
+    return {};
+  }
+  std::optional<double> fall_behind(double most = 10'000) { return run(true, 1.2, most); }
+
+  Governor governor;
+  std::size_t point = 0;
+};
+
+TEST_F(GovernorTest, UsesTheNextCheaperPointAfterSecondsOfDelay) {
+  EXPECT_EQ(fall_behind(), Governor::kBehindSeconds);
+  EXPECT_EQ(point, 1u);
+  EXPECT_EQ(fall_behind(), Governor::kBehindSeconds);
+  EXPECT_EQ(point, 2u);
+  EXPECT_FALSE(fall_behind()) << "there is no cheaper point";
+}
+
+TEST_F(GovernorTest, ShortDelaysChangeNothing) {
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_FALSE(fall_behind(Governor::kBehindSeconds - kInterval));
+    EXPECT_FALSE(run(false, 0.9, kInterval));
+  }
+  EXPECT_FALSE(fall_behind(Governor::kBehindSeconds - kInterval));
+  governor.restart();
+  EXPECT_EQ(fall_behind(), Governor::kBehindSeconds) << "delays before a pause do not count";
+}
+
+TEST_F(GovernorTest, ReturnsIfThePredictedLoadLeavesAFifthFree) {
+  point = 2;
+  EXPECT_FALSE(run(false, 0.41)) << "the more accurate point takes twice the time";
+  EXPECT_EQ(run(false, 0.39), Governor::kReserveSeconds);
+  EXPECT_EQ(point, 1u);
+  EXPECT_EQ(run(false, 0.39), Governor::kReserveSeconds);
+  EXPECT_EQ(point, 0u);
+  EXPECT_FALSE(run(false, 0.1)) << "there is no more accurate point";
+}
+
+TEST_F(GovernorTest, AGreaterLoadRestartsTheTimeOfTheReserve) {
+  point = 1;
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_FALSE(run(false, 0.1, Governor::kReserveSeconds - kInterval));
+    EXPECT_FALSE(run(false, 0.5, kInterval));
+  }
+  EXPECT_EQ(run(false, 0.1), Governor::kReserveSeconds);
+}
+
+TEST_F(GovernorTest, FailedPointsWaitTwiceAsLongAfterEachFailure) {
+  fall_behind();
+  ASSERT_EQ(point, 1u);
+  ASSERT_EQ(run(false, 0.1), Governor::kReserveSeconds);
+  double wait = Governor::kLeastWait;
+  for (int failure = 0; failure < 12; ++failure) {
+    ASSERT_EQ(point, 0u);
+    ASSERT_EQ(fall_behind(), Governor::kBehindSeconds);
+    EXPECT_EQ(run(false, 0.1), std::max(wait, Governor::kReserveSeconds)) << failure;
+    wait = std::min(2 * wait, Governor::kMostWait);
+  }
+}
+
+TEST_F(GovernorTest, APointThatPassesItsTrialHasNoFailures) {
+  fall_behind();
+  run(false, 0.1);
+  fall_behind();  // point 0 fails
+  ASSERT_EQ(run(false, 0.1), Governor::kLeastWait);
+  ASSERT_FALSE(run(false, 0.1, Governor::kTrialSeconds));
+  ASSERT_EQ(fall_behind(), Governor::kBehindSeconds) << "no failure, since the trial has ended";
+  EXPECT_EQ(run(false, 0.1), Governor::kReserveSeconds);
+  fall_behind();
+  EXPECT_EQ(run(false, 0.1), Governor::kLeastWait) << "the first failure again";
+}
+
+TEST_F(GovernorTest, AChangeByAParticipantStartsNoTrial) {
+  point = 1;
+  ASSERT_FALSE(run(false, 0.5, 20));
+  point = 0;
+  ASSERT_EQ(fall_behind(), Governor::kBehindSeconds);
+  EXPECT_EQ(run(false, 0.1), Governor::kReserveSeconds);
+}
+
+TEST_F(GovernorTest, SkipsAPointThatTheSessionCannotUse) {
+  governor.fail(1);
+  EXPECT_EQ(fall_behind(), Governor::kBehindSeconds);
+  EXPECT_EQ(point, 2u);
+}
+
+TEST_F(GovernorTest, TriesAPointAgainAfterARefusal) {
+  ASSERT_EQ(fall_behind(), Governor::kBehindSeconds);
+  ASSERT_EQ(fall_behind(), Governor::kBehindSeconds);
+  ASSERT_EQ(point, 2u);
+  point = 1;
+  governor.fail(2);  // the command was refused
+  EXPECT_EQ(fall_behind(), Governor::kLeastWait);
+  EXPECT_EQ(point, 2u);
 }
 
 }  // namespace

@@ -2,10 +2,7 @@
 
 #include "server/session/session_reads.h"
 
-#include <gtest/gtest.h>
-
 #include <thread>
-#include <utility>
 
 #include "server/session/core/session_core.h"
 #include "server/session/core/session_view.h"
@@ -57,8 +54,7 @@ class SessionReadsTest : public testing::Test {
   }
 
   LoneEnvironment environment;
-  SessionCore core{"s", SessionSettings{"n"},
-                   Simulation::create(to_scene(mixed_scene_text())).value(), environment.shared};
+  SessionCore core{"s", SessionSettings{"n"}, mixed_simulation(), environment.shared};
   int computed = 0;
 
  private:

@@ -1,14 +1,6 @@
 // Recovery of sessions after a crash.
 
-#include <gtest/gtest.h>
-
-#include <chrono>
-#include <filesystem>
-#include <optional>
-#include <string>
-
 #include "core/simulation/simulation.h"
-#include "server/storage/sqlite/database.h"
 #include "tests/server/session/recovery_fixture.h"
 #include "tests/support/wait.h"
 
@@ -18,12 +10,7 @@ namespace {
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
 
-const Json kBall = {{"name", "second"},
-                    {"kind", "rigid"},
-                    {"material", "wood"},
-                    {"spacing", 0.1},
-                    {"shape", {{"type", "sphere"}, {"radius", 0.12}}},
-                    {"position", {0.3, 0.7, 0.8}}};
+const Json kBall = wooden_ball("second");
 
 TEST_F(SessionRecoveryTest, CommandsAndTicksThatWereAnsweredAreThere) {
   begin();
@@ -113,9 +100,8 @@ TEST_F(SessionRecoveryTest, GrabsEndWithoutAResume) {
 
 TEST_F(SessionRecoveryTest, RepeatsAcceptedAndRefusedCommands) {
   ServerLimits few;
-  const Simulation alone = Simulation::create(to_scene(mixed_scene_text())).value();
-  few.max_particles = alone.particle_count() + 2;  // not enough for a second ball
-  life.emplace(catalogue, data, clock, few);
+  few.max_particles = mixed_simulation().particle_count() + 2;  // not enough for a second ball
+  begin(few);
   client().result("control.pause");
   EXPECT_EQ(client().error("world.add_body", {{"body", kBall}}).at("data").at("kind"),
             "limit_reached");
@@ -171,6 +157,7 @@ TEST_F(SessionRecoveryTest, ASessionThatPlaysIsBackAtMostASecondEarlierAndPlays)
   EXPECT_GE(description.at("tick").get<std::uint64_t>() + 101, seen);  // a heartbeat and a tick
 }
 
+// Recovery skips the log before the newest checkpoint. This part may be damaged.
 TEST_F(SessionRecoveryTest, CheckpointsSpareTheWayAndLeadToTheSame) {
   storage.checkpoint_after = 1ms;
   begin();
@@ -179,26 +166,17 @@ TEST_F(SessionRecoveryTest, CheckpointsSpareTheWayAndLeadToTheSame) {
   for (int i = 0; i < 20; ++i) {
     client().result("control.step", {{"ticks", 10}});
     client().result("world.set_gravity", {{"gravity", {0, 0.1 * i, -9}}});
-    life->flush();
+    life->server.flush();
   }
   const std::string before = life->hash();
-  copy_data(data, folder.file("look"));
-  Database look(folder.file("look/checkpoints.db"), Database::Mode::create);
-  ASSERT_GE(look.number("SELECT count(*) FROM checkpoints"), 2);
-  const std::int64_t newest = look.number("SELECT max(sequence) FROM checkpoints");
-  ASSERT_GE(newest, 5);
-  crash();
-  EXPECT_EQ(life->hash(), before);
-  client().result("control.reset");
-  const std::string start = life->hash();
-  crash();
-  EXPECT_EQ(life->hash(), start);
-
-  // Recovery skips the log before the newest checkpoint. This part may be damaged.
-  life.reset();
+  end_by_crash();
   execute("UPDATE log SET params = 'damaged' WHERE sequence BETWEEN 3 AND 5");
   begin();
-  EXPECT_EQ(life->hash(), start);
+  EXPECT_EQ(life->hash(), before);
+  EXPECT_TRUE(client().events("session.diverged").empty());
+  client().result("control.reset");
+  crash();
+  EXPECT_EQ(life->hash(), mixed_hash_after(0));
 }
 
 TEST_F(SessionRecoveryTest, ADamagedCheckpointIsPassedOver) {
@@ -289,37 +267,100 @@ TEST_F(SessionRecoveryTest, DuringARecoveryTheServerReportsThatItIsNotReady) {
 
 TEST_F(SessionRecoveryTest, AClosedSessionStaysAwayAndANewOneGetsAnotherId) {
   begin();
-  client().result("session.create", {{"name", "second"}, {"scene", "mixed"}});
-  client().result("session.join", {{"session", "s2"}});  // joins as the owner
+  client().create_session();
   client().result("session.close", {{"session", "s2"}});
   crash();
   const Json sessions = client().result("session.list").at("sessions");
   ASSERT_EQ(sessions.size(), 1U);
   EXPECT_EQ(sessions[0].at("session"), "s1");
-  EXPECT_EQ(client().result("session.create", {{"name", "c"}, {"scene", "mixed"}}).at("session"),
-            "s3");
+  EXPECT_EQ(client().create_session(), "s3");
 }
 
-TEST_F(SessionRecoveryTest, AResumedParticipantHasItsRoleAndGrabs) {
+TEST_F(SessionRecoveryTest, AResumedParticipantHasItsRoleGrabsAndFrames) {
   begin();
-  const Json made = client().result("session.create", {{"name", "own"}, {"scene", "mixed"}});
-  const Json before =
-      client().result("session.join", {{"session", made.at("session")}, {"name", "Ada"}});
+  const std::string own = client().create_session();
+  const Json before = client().result("session.join", {{"session", own}, {"name", "Ada"}});
   EXPECT_EQ(before.at("role"), "owner");
+  client().result("control.pause");
   client().result("session.configure", {{"name", "hers"}, {"locked", true}});
-  client().result("grab.start", {{"body", 3}, {"particle", 0}, {"target", {0.5, 0.5, 0.9}}});
-  clock.advance(1s);  // time after which the present participants are stored
+  const std::uint64_t grab = client().grab(3);
+  client().result("frames.subscribe", {{"every", 7},
+                                       {"detail", 2},
+                                       {"region", {{"min", {0, 0, 0}}, {"max", {1, 1, 0.5}}}},
+                                       {"attributes", {{"speed", 0.5}}}});
+  clock.advance(1s);  // time after which the participants are stored, also of a paused session
   crash();
-  const Json after = client().result(
-      "session.join", {{"session", made.at("session")}, {"resume", before.at("resume")}});
+  const Json after =
+      client().result("session.join", {{"session", own}, {"resume", before.at("resume")}});
   EXPECT_EQ(after.at("resumed"), true);
   EXPECT_EQ(after.at("participant"), before.at("participant"));
   EXPECT_EQ(after.at("name"), "Ada");
   EXPECT_EQ(after.at("role"), "owner");
   EXPECT_EQ(after.at("settings").at("locked"), true);
   EXPECT_EQ(after.at("settings").at("name"), "hers");
-  const int move = client().send("grab.move", {{"grab", 1}, {"target", {0.5, 0.4, 0.9}}});
-  EXPECT_TRUE(client().wait_reply_at_tick(move).contains("result"));
+  const GridFrame frame = client().wait_frame([](const GridFrame&) { return true; });
+  EXPECT_EQ(frame.detail, 2);
+  EXPECT_TRUE(frame.has_region);
+  EXPECT_DOUBLE_EQ(frame.scale.attribute_quanta[0], 1.0);
+  client().result("grab.move", {{"grab", grab}, {"target", {0.5, 0.4, 0.9}}});
+}
+
+// Recovery from recent states, which are not synchronised.
+
+/// The budget admits one checkpoint. The later states are recent states.
+class RecentState : public SessionRecoveryTest {
+ protected:
+  RecentState() {
+    storage.checkpoint_after = 1ms;
+    storage.checkpoint_bytes_per_second = 1;
+    begin();
+    client().result("control.pause");
+    for (int i = 0; i < 20; ++i) {
+      client().result("control.step", {{"ticks", 10}});
+      client().result("world.set_gravity", {{"gravity", {0, 0.1 * i, -9}}});
+      life->server.flush();
+      clock.advance(1s);
+    }
+    before = life->hash();
+    end_by_crash();
+  }
+  std::string file() const {
+    for (const auto& entry : fs::directory_iterator(data + "/recent")) return entry.path();
+    throw std::runtime_error("there is no recent state");
+  }
+  std::string before;
+};
+
+TEST_F(RecentState, IsTheStartOfARecovery) {
+  const std::int64_t newest = Database(data + "/checkpoints.db", Database::Mode::read)
+                                  .number("SELECT max(sequence) FROM checkpoints");
+  ASSERT_LT(newest, 10);
+  execute("UPDATE log SET params = 'damaged' WHERE sequence BETWEEN " + std::to_string(newest + 1) +
+          " AND 10");
+  begin();
+  EXPECT_EQ(life->hash(), before);
+  EXPECT_TRUE(client().events("session.diverged").empty());
+}
+
+TEST_F(RecentState, IsSkippedIfItIsIncomplete) {
+  fs::resize_file(file(), fs::file_size(file()) / 2);
+  begin();
+  EXPECT_EQ(life->hash(), before);
+}
+
+// With durability "process", a power failure can lose the newest commands, and not the state.
+TEST_F(RecentState, IsRemovedIfTheLogIsShorter) {
+  execute("DELETE FROM log WHERE sequence > 8");
+  execute("UPDATE sessions SET position = NULL, reached = 0");
+  const std::int64_t tick =
+      Database(data + "/vat.db", Database::Mode::read).number("SELECT max(tick) FROM log");
+  begin();
+  EXPECT_EQ(life->tick(), static_cast<std::uint64_t>(tick));
+  EXPECT_TRUE(client().events("session.diverged").empty());
+  client().result("control.step", {{"ticks", 3}});
+  const std::string after = life->hash();
+  crash();
+  EXPECT_EQ(life->hash(), after);
 }
 
 }  // namespace

@@ -1,9 +1,5 @@
 // A session's step runs on its own thread first. Free threads then help other sessions.
 
-#include <filesystem>
-#include <fstream>
-#include <vector>
-
 #include "core/threads/thread_pool.h"
 #include "tests/server/fixture/session_fixture.h"
 #include "tests/support/temporary_folder.h"

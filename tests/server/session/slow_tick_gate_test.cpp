@@ -1,8 +1,5 @@
-#include <gtest/gtest.h>
 
-#include <atomic>
 #include <thread>
-#include <vector>
 
 #include "server/session/core/scene_loading.h"
 #include "server/session/session.h"

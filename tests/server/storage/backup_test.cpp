@@ -2,16 +2,6 @@
 
 #include "server/storage/backup.h"
 
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
-#include <functional>
-#include <optional>
-#include <string>
-#include <string_view>
-#include <utility>
-
 #include "server/storage/checkpoint_store.h"
 #include "server/storage/saved_states.h"
 #include "server/storage/sqlite/main_database.h"
@@ -31,11 +21,6 @@ class Backup : public testing::Test {
     host.emplace(catalogue, path, unhurried_limits(), clock);
   }
   TestClient& client() { return *host->client; }
-  std::string create_session() {
-    return client()
-        .result("session.create", {{"name", "other"}, {"scene", Json::parse(mixed_scene_text())}})
-        .at("session");
-  }
 
   const TemporaryFolder folder;
   const std::string data = folder.file("data");
@@ -50,7 +35,7 @@ TEST_F(Backup, OfARunningServerHasAllThatWasAnswered) {
   host->step(30);
   client().result("session.save", {{"name", "a state"}});
   client().result("scene.save", {{"name", "a scene"}});
-  const std::string other = create_session();
+  const std::string other = client().create_session();
   client().result("session.close", {{"session", other}});
   client().result("world.set_gravity", {{"gravity", {0, 0, -3}}});
   host->step(5);
@@ -67,7 +52,7 @@ TEST_F(Backup, OfARunningServerHasAllThatWasAnswered) {
   EXPECT_TRUE(client().events("session.diverged").empty());
   EXPECT_EQ(client().result("session.load", {{"name", "a state"}}).at("tick"), 30);
   EXPECT_EQ(client().error("scene.save", {{"name", "a scene"}}).at("code"), 1006) << "its key";
-  EXPECT_NE(create_session(), other) << "numbers are not used again";
+  EXPECT_NE(client().create_session(), other) << "numbers are not used again";
 }
 
 TEST_F(Backup, OfAnOlderVersionIsOfThatVersion) {

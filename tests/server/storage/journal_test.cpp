@@ -6,13 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <memory>
-#include <mutex>
 #include <numeric>
-#include <optional>
-#include <stdexcept>
-#include <utility>
-#include <vector>
 
 #include "tests/server/fixture/test_disk.h"
 #include "tests/support/manual_clock.h"

@@ -4,10 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <filesystem>
-#include <fstream>
-#include <string>
-
 #include "tests/support/temporary_folder.h"
 
 namespace vat::test::recent_states_test {

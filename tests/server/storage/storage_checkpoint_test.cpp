@@ -1,15 +1,5 @@
 // Checkpoints: storage, compression, frequency, and the log that they shorten.
 
-#include <gtest/gtest.h>
-
-#include <algorithm>
-#include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "server/history/recorder.h"
 #include "server/history/session_log.h"
 #include "server/storage/checkpoint_store.h"
@@ -17,7 +7,6 @@
 #include "server/storage/storage.h"
 #include "tests/server/fixture/session_fixture.h"
 #include "tests/server/fixture/test_disk.h"
-#include "tests/support/manual_clock.h"
 #include "tests/support/temporary_folder.h"
 
 namespace vat::test::storage_checkpoint_test {
@@ -127,15 +116,6 @@ TEST_F(StorageCheckpoints, TheNewestIsKeptAtAnySize) {
   EXPECT_EQ(positions(store, 2), std::vector<std::uint64_t>{1});
 }
 
-TEST_F(StorageCheckpoints, ThoseOfOtherSessionsCanGo) {
-  CheckpointStore store(path, 1 << 20);
-  for (std::uint64_t session = 1; session <= 3; ++session) store.write(checkpoint(session, 1, 10));
-  store.keep_only({2});
-  EXPECT_TRUE(store.places(1).empty());
-  EXPECT_EQ(store.places(2).size(), 1U);
-  EXPECT_TRUE(store.places(3).empty());
-}
-
 TEST_F(StorageCheckpoints, ADamagedOneIsReportedByItsKind) {
   CheckpointStore store(path, 1 << 20);
   store.write(checkpoint(1, 1, 1000));
@@ -211,6 +191,7 @@ TEST_F(StorageCheckpoints, OfClosedSessionsReturnTheirSpaceToTheSystem) {
   store.keep_only({1});
   EXPECT_LE(std::filesystem::file_size(path), small + 8192);
   EXPECT_EQ(positions(store, 1), std::vector<std::uint64_t>{10});
+  EXPECT_TRUE(store.places(2).empty());
 }
 
 // A checkpoint of 200 kB is written once, not also to a write-ahead log.
@@ -247,18 +228,14 @@ Course follow(CheckpointPace pace, Seconds tick, Seconds cost, Seconds length,
   return course;
 }
 
+// Sessions share the work of a recovery.
 TEST(CheckpointPace, CheapOnesComeAsOftenAsIsWanted) {
-  const Course course =
-      follow(CheckpointPace(Seconds(0.15)), Seconds(0.004), Seconds(0.001), Seconds(100));
-  EXPECT_LE(course.longest.count(), 0.15 + 0.004);
-  EXPECT_LE(course.share, CheckpointPace::kMaxShare);
-}
-
-TEST(CheckpointPace, SessionsShareTheWorkOfARecovery) {
-  const Course course =
-      follow(CheckpointPace(Seconds(4)), Seconds(0.004), Seconds(0.001), Seconds(100), 20);
-  EXPECT_LE(course.longest.count(), 4.0 / 20 + 0.004);
-  EXPECT_LE(course.share, CheckpointPace::kMaxShare);
+  for (const auto& [wanted, sessions] : {std::pair(0.15, 1), std::pair(4.0, 20)}) {
+    const Course course = follow(CheckpointPace(Seconds(wanted)), Seconds(0.004), Seconds(0.001),
+                                 Seconds(100), static_cast<std::size_t>(sessions));
+    EXPECT_LE(course.longest.count(), wanted / sessions + 0.004) << sessions;
+    EXPECT_LE(course.share, CheckpointPace::kMaxShare) << sessions;
+  }
 }
 
 TEST(CheckpointPace, DearOnesTakeTheirShareAndNoMore) {
@@ -281,7 +258,7 @@ TEST(CheckpointPace, SomeAreWrittenAtAnyCost) {
 
 class BoundedLog : public testing::Test {
  protected:
-  BoundedLog() : simulation(Simulation::create(to_scene(mixed_scene_text())).value()) {
+  BoundedLog() : simulation(mixed_simulation()) {
     StoredSession session;
     session.name = "n";
     session.instruction_set = to_string(simulation.instruction_set());
@@ -347,16 +324,13 @@ TEST_F(BoundedLog, CheckpointsStayWithinTheirBytesPerSecond) {
   EXPECT_EQ(store(), Counts(5, 2));
 }
 
-TEST_F(BoundedLog, UpToItsLimitNothingIsForgotten) {
+TEST_F(BoundedLog, BeyondItsLimitItBeginsAtTheCheckpointAndKeepsTheScene) {
   SessionLog log(storage, number, {1, 0});
   append(log, 9);
   keep(log, 1);
-  EXPECT_EQ(sequences().size(), 10U);
-}
-
-TEST_F(BoundedLog, BeyondItsLimitItBeginsAtTheCheckpointAndKeepsTheScene) {
-  SessionLog log(storage, number, {1, 0});
-  append(log, 12);
+  EXPECT_EQ(sequences().size(), 10U) << "up to its limit nothing is forgotten";
+  append(log, 3);
+  EXPECT_EQ(sequences().size(), 13U) << "nor without a checkpoint";
   keep(log, 4);
   EXPECT_EQ(sequences(), std::vector<std::uint64_t>({4}));
   append(log, 2);
@@ -365,12 +339,6 @@ TEST_F(BoundedLog, BeyondItsLimitItBeginsAtTheCheckpointAndKeepsTheScene) {
   EXPECT_EQ(storage.checkpoints().places(number).back().sequence, 13U);
   keep(log, 4);  // the log is short again
   EXPECT_EQ(sequences().size(), 3U);
-}
-
-TEST_F(BoundedLog, WithoutACheckpointNothingIsForgotten) {
-  SessionLog log(storage, number, {1, 0});
-  append(log, 30);
-  EXPECT_EQ(sequences().size(), 31U);
 }
 
 }  // namespace

@@ -1,7 +1,5 @@
 // Several HTTP requests on one connection.
 
-#include <gtest/gtest.h>
-
 #include "tests/server/transport/transport_fixture.h"
 
 namespace vat::test::keep_alive_test {
@@ -113,14 +111,6 @@ TEST_F(KeepAliveTest, EachRequestOfAProxyHasItsOwnClient) {
                upgrade_headers() + "\r\n");
   ASSERT_TRUE(recorder.wait_opened(1));
   EXPECT_EQ(recorder.connection(1)->address(), "198.51.100.2");
-}
-
-TEST_F(KeepAliveTest, TheServerStopsWithIdleConnections) {
-  start();
-  RawClient client(port);
-  EXPECT_EQ(http_again(client, "/").status, 200);
-  transport.reset();
-  EXPECT_EQ(client.read_all(), "");
 }
 
 }  // namespace

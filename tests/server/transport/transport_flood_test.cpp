@@ -3,11 +3,9 @@
 
 #include <algorithm>
 #include <atomic>
-#include <thread>
 
 #include "tests/server/transport/transport_fixture.h"
 #include "tests/support/memory/resident_bytes.h"
-#include "tests/support/patience.h"
 #include "tests/support/wait.h"
 
 namespace vat::test::transport_flood_test {
@@ -67,27 +65,6 @@ class TransportFloodTest : public TransportTest {
   }
 };
 
-// Slowloris: many connections that occasionally send one byte of a header or body.
-TEST_F(TransportFloodTest, DripsOfHeadersAndBodies) {
-  settings.handshake_timeout = milliseconds(1000);
-  withstand([&] {
-    std::vector<std::unique_ptr<RawClient>> drips;
-    for (int i = 0; i < 200; ++i) {
-      drips.push_back(std::make_unique<RawClient>(port));
-      drips.back()->write(
-          i % 2 == 0 ? "GET /ws HTTP/1.1\r\nHost: localhost\r\nX-Header: "
-                     : "POST / HTTP/1.1\r\nHost: localhost\r\nContent-Length: 10000\r\n\r\n");
-    }
-    const auto are_cut_off = [&] {
-      pause(milliseconds(100));
-      std::erase_if(drips, [](const auto& d) { return write_until_closed(*d, "x", 1) == 0; });
-      return drips.empty();
-    };
-    EXPECT_TRUE(wait_until(are_cut_off))
-        << "closed at the time limit although they still sent data";
-  });
-}
-
 // A slow message occupies only its connection, and this must answer pings.
 TEST_F(TransportFloodTest, DripsOfMessages) {
   settings.ping_interval = milliseconds(300);
@@ -113,17 +90,6 @@ TEST_F(TransportFloodTest, HandshakesAsFastAsTheyCome) {
   });
 }
 
-TEST_F(TransportFloodTest, ConnectionsThatSayNothingAsFastAsTheyCome) {
-  settings.max_connections_per_address = 32;
-  withstand([&] {
-    std::vector<std::unique_ptr<RawClient>> open;
-    for (int i = 0; i < 3000; ++i) {
-      open.push_back(std::make_unique<RawClient>(port));
-      if (open.size() > 200) open.erase(open.begin());
-    }
-  });
-}
-
 // The server does not allocate memory for announced bytes before they arrive.
 TEST_F(TransportFloodTest, FramesThatSayTheyAreHuge) {
   withstand([&] {
@@ -133,18 +99,6 @@ TEST_F(TransportFloodTest, FramesThatSayTheyAreHuge) {
       header += std::string("\x3f\xff\xff\xff\xff\xff\xff\xff", 8) + "\1\2\3\4";
       client.raw().write(header);
       EXPECT_EQ(client.read_close(), 1009);
-    }
-  });
-}
-
-// Many connections that send messages of the maximum size without their end. This is the largest
-// cost by design, here one megabyte each.
-TEST_F(TransportFloodTest, MessagesThatNeverEnd) {
-  withstand([&] {
-    std::vector<std::unique_ptr<WsClient>> clients;
-    for (int i = 0; i < 20; ++i) {
-      clients.push_back(std::make_unique<WsClient>(port));
-      clients.back()->raw().write(client_frame(1, std::string(1'000'000, 'x'), false));
     }
   });
 }
@@ -160,17 +114,6 @@ TEST_F(TransportFloodTest, FragmentsWithoutEnd) {
     for (int i = 0; i < 1000; ++i) single += client_frame(0, "x", false);
     write_until_closed(client.raw(), single, 3'000'000 * 7);
     EXPECT_EQ(client.read_close(), 1009);
-  });
-}
-
-TEST_F(TransportFloodTest, PingsAndPongsWithoutEnd) {
-  withstand([&] {
-    WsClient client(port);
-    std::string batch;
-    for (int i = 0; i < 100; ++i) {
-      batch += client_frame(9, std::string(125, 'p')) + client_frame(10, "nobody asked");
-    }
-    for (int i = 0; i < 1000; ++i) client.raw().write(batch);
   });
 }
 

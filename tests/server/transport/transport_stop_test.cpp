@@ -6,11 +6,8 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <fstream>
 #include <future>
-#include <optional>
-#include <thread>
 
 #include "tests/server/transport/transport_fixture.h"
 #include "tests/support/wait.h"
@@ -99,7 +96,11 @@ TEST_F(TransportStopTest, DoesNotWaitForSocketsThatAreNotWebSockets) {
   RawClient silent(port);
   RawClient half(port);
   half.write("GET / HTTP/1.1\r\n");
+  RawClient kept(port);
+  EXPECT_EQ(http_again(kept, "/").status, 200);
   EXPECT_LT(timed_stop(), milliseconds(500));
+  transport.reset();
+  EXPECT_EQ(kept.read_all(), "");
 }
 
 TEST_F(TransportStopTest, TwiceAndWithoutAStart) {
@@ -121,21 +122,24 @@ TEST_F(TransportStopTest, ThePortIsFreeAtOnce) {
   EXPECT_EQ(http(port, "GET", "/x").body, "/x");
 }
 
-std::string error_of_start(Transport& transport) {
-  try {
-    transport.start();
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "no error";
-}
-
-TEST_F(TransportStopTest, AForeignAddressIsAnErrorThatNamesIt) {
-  settings.host = "192.0.2.1";  // reserved for documentation, RFC 5737
-  EXPECT_EQ(error_of_start(*make_websocket_transport(settings, recorder, http_handler)),
+// Two programs that share a port would receive each other's clients.
+TEST_F(TransportStopTest, AnAddressThatCannotBeUsedIsNamed) {
+  const auto error_of_start = [this](const std::string& host, std::uint16_t at) -> std::string {
+    settings.host = host;
+    settings.port = at;
+    try {
+      make_websocket_transport(settings, recorder, http_handler)->start();
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  start();
+  EXPECT_EQ(error_of_start("127.0.0.1", port),
+            "cannot listen on 127.0.0.1:" + std::to_string(port) + ": Address already in use");
+  EXPECT_EQ(error_of_start("192.0.2.1", 0),  // reserved for documentation, RFC 5737
             "cannot listen on 192.0.2.1:0: Cannot assign requested address");
-  settings.host = "example.org";
-  EXPECT_EQ(error_of_start(*make_websocket_transport(settings, recorder, http_handler)),
+  EXPECT_EQ(error_of_start("example.org", 0),
             "cannot listen on example.org:0: the host must be a numeric address");
 }
 
