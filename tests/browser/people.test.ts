@@ -102,6 +102,44 @@ it('gives control to a viewer that requests it', async () => {
   owner.leave();
 });
 
+it('permits the governor by a file of vat tune, and ends the permission', async () => {
+  const observer = await Observer.join(visits.server.url);
+  const { session } = await observer.request('session.create', {
+    name: 'tuned',
+    scene: 'rigid-stack',
+  });
+  await observer.request('session.join', { session });
+  const owner = await openPage(`${visits.server.url}?session=${session}`);
+  await owner.untilTick(0);
+  await unfold(owner, 'people-details');
+  expect(await owner.page.isVisible('#governor-row')).toBe(false); // a controller
+  const { participants } = await observer.request('presence.list', {});
+  const { participant } = participants.find(({ role }) => role === 'controller')!;
+  await observer.request('participant.set_role', { participant, role: 'owner' });
+  await owner.page.waitForSelector('#governor-row');
+  const choose = (text: string): Promise<void> =>
+    owner.page.setInputFiles('#governor-file', {
+      name: 'front.json',
+      mimeType: 'application/json',
+      buffer: Buffer.from(text),
+    });
+  await choose('{}');
+  await owner.page.waitForSelector('#notices li:has-text("has no points of the governor")');
+  const { scene } = await observer.request('scene.get', {});
+  const { integrator, step } = scene.numerics as { integrator: string; step: number };
+  const governor = [
+    { integrator, step: step / 2, error: 1e-3, seconds: 1 },
+    { integrator, step, error: 1e-2, seconds: 0.5 },
+  ];
+  await choose(JSON.stringify({ governor }));
+  await owner.page.waitForSelector('#governor:checked');
+  await owner.page.click('#governor');
+  await owner.page.waitForSelector('#governor:not(:checked)');
+  expect(owner.problems).toEqual([]);
+  await owner.close();
+  observer.leave();
+});
+
 it('switches between light and dark', async () => {
   await visits.visit('rigid-stack');
   const { page } = visits.viewer;
