@@ -168,17 +168,27 @@ TEST(Relay, GivesTheAnswersAndFramesOfTheOwner) {
   EXPECT_FALSE(relayed.has_speed);
 }
 
+/// A viewer at a relay, whose session is paused.
+struct ViewerOfPause {
+  ViewerOfPause() {
+    client::SessionJoin::Params join;
+    join.session = kSession;
+    client.call<client::SessionJoin>(join).get();
+    client.call<client::ControlPause>({}).get();
+    client.call<client::FramesSubscribe>({}).get();
+  }
+
+  Nodes nodes{2, kRelay};
+  Received received;
+  client::Client client{
+      nodes.url(nodes.others(nodes.owner_of(kSession, "a")).front()), {}, received.handlers()};
+};
+
 // The frame of the new epoch may be faster than its description.
 TEST(Relay, AViewerOfAPausedSessionSeesItsReset) {
-  Nodes nodes(2, kRelay);
-  const std::string owner = nodes.owner_of(kSession, "a");
-  Received relayed;
-  client::Client viewer(nodes.url(nodes.others(owner).front()), {}, relayed.handlers());
-  client::SessionJoin::Params join;
-  join.session = kSession;
-  viewer.call<client::SessionJoin>(join).get();
-  viewer.call<client::ControlPause>({}).get();
-  viewer.call<client::FramesSubscribe>({}).get();
+  ViewerOfPause paused;
+  client::Client& viewer = paused.client;
+  Received& relayed = paused.received;
   for (int i = 0; i < 5; ++i) {
     const auto stepped = viewer.call<client::ControlStep>({}).get();
     ASSERT_TRUE(wait_until([&] {
@@ -194,15 +204,9 @@ TEST(Relay, AViewerOfAPausedSessionSeesItsReset) {
 }
 
 TEST(Relay, AViewerGetsTheAttributesThatItWants) {
-  Nodes nodes(2, kRelay);
-  const std::string owner = nodes.owner_of(kSession, "a");
-  Received relayed;
-  client::Client viewer(nodes.url(nodes.others(owner).front()), {}, relayed.handlers());
-  client::SessionJoin::Params join;
-  join.session = kSession;
-  viewer.call<client::SessionJoin>(join).get();
-  viewer.call<client::ControlPause>({}).get();
-  viewer.call<client::FramesSubscribe>({}).get();
+  ViewerOfPause paused;
+  client::Client& viewer = paused.client;
+  Received& relayed = paused.received;
   ASSERT_TRUE(wait_until([&] { return relayed.count > 0; }));
   client::FramesSubscribe::Params wish;
   wish.attributes.emplace().speed = 0.01;
