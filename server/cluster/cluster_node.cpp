@@ -21,10 +21,7 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kTick(100);
 constexpr milliseconds kRefresh(10'000);
-constexpr milliseconds kFresh(1500);  // three renewals
 constexpr milliseconds kAnswering(750);
-constexpr milliseconds kOrphanTurn(1000);
-constexpr milliseconds kFailedPause(5000);
 constexpr milliseconds kClaimTime(20'000);
 constexpr milliseconds kClaimInterval(100);
 constexpr const char* kMarker = "cluster";
@@ -88,10 +85,8 @@ std::size_t ClusterNode::start(ClusterHost& host) {
   connection_.on_reconnect([this] { needs_refresh_ = true; });
   claim_name();
   listen();
-  locator_.watch([this](const LocatedSession&) {
-    boost::asio::post(timer_thread_, [this] {
-      if (!leaving_) tick();
-    });
+  locator_.watch([this](const LocatedSession& changed) {
+    boost::asio::post(timer_thread_, [this, number = changed.number] { look_at_change(number); });
   });
   connection_.flush(milliseconds(5000));
   for (const Bucket::Entry& entry : node_bucket_.all()) {
@@ -237,9 +232,7 @@ void ClusterNode::tick() {
     last_refresh_ = now;
     post([this] { refresh(); });
   }
-  if (lease_.is_valid()) {
-    for (const LocatedSession& entry : locator_.all()) look_at(entry);
-  }
+  if (lease_.is_valid()) look_at_sessions(now);
   host_->cluster_changed();
 }
 
@@ -282,61 +275,6 @@ void ClusterNode::renew(Time now) {
     if (!checking_.exchange(true)) post([this, now] { check_sessions(now); });
   };
   node_bucket_.put(name(), write_node(describe()), name_revision_, finish);
-}
-
-void ClusterNode::look_at(const LocatedSession& entry) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (reserved_.contains(entry.number)) return;
-  }
-  if (const auto hosted = find_hosted(entry.number)) {
-    if (entry.owner != name() || entry.epoch > hosted->entry.epoch) {
-      post([this, number = entry.number] { lose(number); });
-    }
-    return;
-  }
-  if (!is_wanted(entry)) return;
-  {
-    const std::lock_guard lock(mutex_);
-    if (!reserved_.insert(entry.number).second) return;
-  }
-  post([this, number = entry.number] { take(number); });
-}
-
-bool ClusterNode::is_wanted(const LocatedSession& entry) {
-  const auto now = clock_.now();
-  const bool has_owner = !entry.owner.empty();
-  const std::lock_guard lock(mutex_);
-  const auto failed = failed_.find(entry.number);
-  if (failed != failed_.end() && now - failed->second < kFailedPause) return false;
-  if (entry.owner == name()) return true;
-  if (draining_) return false;
-  if (!has_owner && entry.successor == name()) return true;
-  // After an outage, the other nodes first get the time to renew their leases.
-  const bool may_judge = now - lease_.held_since() >= Lease::kOthersTime;
-  const bool is_orphan = has_owner
-                             ? may_judge && nodes_.silence_of(entry.owner) >= Lease::kOthersTime
-                             : !nodes_.is_seen_within(entry.successor, kFresh);
-  if (!is_orphan) {
-    orphans_.erase(entry.number);
-    return false;
-  }
-  const auto since = orphans_.emplace(entry.number, now).first->second;
-  return is_my_turn(entry, now - since);
-}
-
-bool ClusterNode::is_my_turn(const LocatedSession& entry, SteadyClock::duration orphaned) const {
-  const Result<InstructionSet> needed = parse_instruction_set(entry.instruction_set);
-  if (!needed || !check_available(needed.value())) return false;
-  std::vector<std::string> names;
-  for (const NodeInfo& node : nodes_.seen_within(kFresh)) {
-    const Result<InstructionSet> has = parse_instruction_set(node.instruction_set);
-    if (node.accepts && has && has.value() >= needed.value()) names.push_back(node.name);
-  }
-  names = rank_nodes(entry.number, std::move(names));
-  const auto mine = std::ranges::find(names, name());
-  if (mine == names.end()) return false;
-  return orphaned >= (mine - names.begin()) * kOrphanTurn;
 }
 
 std::shared_ptr<SessionReplica> ClusterNode::replica_of(std::uint64_t session) {

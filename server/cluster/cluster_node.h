@@ -103,6 +103,7 @@ class ClusterNode final : public SessionReplicas, public SendGate {
     LocatedSession entry;
   };
   using Time = SteadyClock::time_point;
+  static constexpr std::chrono::milliseconds kFresh = 3 * Lease::kRenewal;
 
   void check_data_folder() const;
   /// Writes the node's entry. Waits until an earlier process with the name has no lease.
@@ -117,6 +118,9 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   void wait_for_tick();
   void tick();
   void renew(Time now);
+  void look_at_change(std::uint64_t session);
+  /// Looks at the sessions of this node, released ones, and those of silent nodes.
+  void look_at_sessions(Time now);
   void look_at(const LocatedSession& entry);
   bool is_wanted(const LocatedSession& entry);
   bool is_my_turn(const LocatedSession& entry, SteadyClock::duration orphaned) const;
@@ -178,6 +182,7 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   // Used by the timer's thread only.
   Time last_renewal_{};
   Time last_refresh_{};
+  std::map<std::string, Time> silent_looks_;  // by silent node: last look at its sessions
   Time measured_at_{};
   double measured_seconds_ = 0;
 

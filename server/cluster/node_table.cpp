@@ -18,6 +18,12 @@ std::uint64_t hash_of_node(std::uint64_t session, const std::string& name) {
   return hash ^ hash >> 33;
 }
 
+/// Returns the place of a node in the order of the nodes that should take the session.
+std::pair<std::uint64_t, std::string_view> place_of(std::uint64_t session,
+                                                    const std::string& name) {
+  return {~hash_of_node(session, name), name};
+}
+
 }  // namespace
 
 std::string write_node(const NodeInfo& node) {
@@ -84,10 +90,22 @@ SteadyClock::duration NodeTable::silence_of(const std::string& name) const {
   return clock_.now() - (found == nodes_.end() ? begin_ : found->second.time);
 }
 
+std::size_t NodeTable::count_before(const std::string& name, std::uint64_t session,
+                                    SteadyClock::duration time,
+                                    const std::function<bool(const NodeInfo&)>& can_take) const {
+  const auto own = place_of(session, name);
+  const std::lock_guard lock(mutex_);
+  const auto now = clock_.now();
+  return static_cast<std::size_t>(std::ranges::count_if(nodes_, [&](const auto& node) {
+    const Seen& seen = node.second;
+    return now - seen.time < time && seen.node.accepts && can_take(seen.node) &&
+           place_of(session, node.first) < own;
+  }));
+}
+
 std::vector<std::string> rank_nodes(std::uint64_t session, std::vector<std::string> names) {
-  std::ranges::sort(names, [session](const std::string& a, const std::string& b) {
-    return std::pair(hash_of_node(session, a), a) > std::pair(hash_of_node(session, b), b);
-  });
+  std::ranges::sort(names, {},
+                    [session](const std::string& name) { return place_of(session, name); });
   return names;
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -41,6 +43,12 @@ class NodeTable {
   bool is_seen_within(const std::string& name, SteadyClock::duration time) const;
   /// Returns the revision of the node's last known renewal; 0: none.
   std::uint64_t revision_of(const std::string& name) const;
+  /// Returns the number of other nodes that should take a session before the node `name`: those
+  /// with a renewal within the last `time`, which take sessions and satisfy the condition. See
+  /// rank_nodes().
+  std::size_t count_before(const std::string& name, std::uint64_t session,
+                           SteadyClock::duration time,
+                           const std::function<bool(const NodeInfo&)>& can_take) const;
   /// Returns how long no renewal of the node has arrived, at most since the start of this process.
   SteadyClock::duration silence_of(const std::string& name) const;
 

@@ -1,5 +1,6 @@
 #include "server/cluster/session_locator.h"
 
+#include <algorithm>
 #include <charconv>
 #include <system_error>
 #include <utility>
@@ -100,6 +101,15 @@ void SessionLocator::follow(const Bucket::Entry& entry) {
   } else if (const auto session = read_located(entry)) {
     note(*session, false);
   }
+  const std::lock_guard lock(mutex_);
+  if (entry.revision == complete_to_ + 1) complete_to_ = entry.revision;
+}
+
+void SessionLocator::erase(std::map<std::uint64_t, LocatedSession>::iterator session) {
+  const auto owner = by_owner_.find(session->second.owner);
+  owner->second.erase(session->first);
+  if (owner->second.empty()) by_owner_.erase(owner);
+  sessions_.erase(session);
 }
 
 void SessionLocator::note(const LocatedSession& session, bool is_removed) {
@@ -109,24 +119,43 @@ void SessionLocator::note(const LocatedSession& session, bool is_removed) {
     if (known != sessions_.end() && known->second.revision >= session.revision) return;
     const auto removed = removed_.find(session.number);
     if (removed != removed_.end() && removed->second >= session.revision) return;
+    if (known != sessions_.end()) erase(known);
     if (is_removed) {
-      sessions_.erase(session.number);
       removed_[session.number] = session.revision;
       if (removed_.size() > kMaxRemoved) removed_.erase(removed_.begin());
     } else {
       sessions_[session.number] = session;
+      by_owner_[session.owner].insert(session.number);
     }
   }
   if (changed_) changed_(session);
 }
 
 void SessionLocator::refresh() {
+  const std::uint64_t last = bucket_.last_revision();
+  std::uint64_t known = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    known = complete_to_;
+  }
+  if (last == known) return;
+  if (known == 0 || last < known) return read_all(last);  // at the start, or of a new bucket
+  std::uint64_t reached = last;
+  for (const Bucket::Entry& entry : bucket_.changes_since(known)) {
+    follow(entry);
+    reached = std::max(reached, entry.revision);
+  }
+  const std::lock_guard lock(mutex_);
+  complete_to_ = std::max(complete_to_, reached);
+}
+
+void SessionLocator::read_all(std::uint64_t last_revision) {
   std::map<std::uint64_t, LocatedSession> before;
   {
     const std::lock_guard lock(mutex_);
     before = sessions_;
   }
-  for (const Bucket::Entry& entry : bucket_.all()) {
+  for (const Bucket::Entry& entry : bucket_.all(std::string(kSessionKey) + ">")) {
     if (const auto session = read_located(entry)) {
       before.erase(session->number);
       note(*session, false);
@@ -137,6 +166,8 @@ void SessionLocator::refresh() {
     ++session.revision;  // of the removal, which was not seen
     note(session, true);
   }
+  const std::lock_guard lock(mutex_);
+  complete_to_ = last_revision;
 }
 
 std::uint64_t SessionLocator::next_number() {
@@ -255,6 +286,22 @@ std::vector<LocatedSession> SessionLocator::all() const {
   std::vector<LocatedSession> all;
   for (const auto& [number, session] : sessions_) all.push_back(session);
   return all;
+}
+
+std::vector<std::string> SessionLocator::owners() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::string> owners;
+  for (const auto& [owner, numbers] : by_owner_) owners.push_back(owner);
+  return owners;
+}
+
+std::vector<LocatedSession> SessionLocator::sessions_of(const std::string& owner) const {
+  const std::lock_guard lock(mutex_);
+  std::vector<LocatedSession> sessions;
+  const auto found = by_owner_.find(owner);
+  if (found == by_owner_.end()) return sessions;
+  for (const std::uint64_t number : found->second) sessions.push_back(sessions_.at(number));
+  return sessions;
 }
 
 }  // namespace vat

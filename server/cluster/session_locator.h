@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,8 @@ class SessionLocator {
   /// Calls `changed` after each change of the copy, on a thread of the connection or of the caller
   /// of refresh().
   void watch(std::function<void(const LocatedSession&)> changed);
-  /// Reads all entries. Needed at the start and after a loss of the connection. Waits.
+  /// Reads the entries at the first call, and afterwards the changes that watch() has missed, for
+  /// example during a loss of the connection. Waits.
   void refresh();
 
   /// Returns a number that no session of the cluster has had. Waits.
@@ -60,6 +62,10 @@ class SessionLocator {
   std::optional<LocatedSession> find(std::uint64_t number) const;
   /// Returns the copies of all entries, in ascending order of their numbers.
   std::vector<LocatedSession> all() const;
+  /// Returns the nodes that own sessions, in alphabetical order; "" owns the released ones.
+  std::vector<std::string> owners() const;
+  /// Returns the copies of the entries of an owner, in ascending order of their numbers.
+  std::vector<LocatedSession> sessions_of(const std::string& owner) const;
 
  private:
   LocatedSession put(LocatedSession session);
@@ -68,13 +74,17 @@ class SessionLocator {
   void check_name(const LocatedSession& session);
   void free_name(const std::string& name, std::uint64_t number);
   void follow(const Bucket::Entry& entry);
+  void read_all(std::uint64_t last_revision);
   /// Notes an entry unless a later one is known, and calls the function of watch().
   void note(const LocatedSession& session, bool is_removed);
+  void erase(std::map<std::uint64_t, LocatedSession>::iterator session);
 
   Bucket bucket_;
-  mutable std::mutex mutex_;  // guards `sessions_` and `removed_`
+  mutable std::mutex mutex_;  // guards the members up to `complete_to_`
   std::map<std::uint64_t, LocatedSession> sessions_;
+  std::map<std::string, std::set<std::uint64_t>> by_owner_;  // numbers of `sessions_`
   std::map<std::uint64_t, std::uint64_t> removed_;  // revisions of removals by session number
+  std::uint64_t complete_to_ = 0;  // the copy contains all changes up to this revision
   std::function<void(const LocatedSession&)> changed_;
   std::unique_ptr<NatsConnection::Subscription> watch_;
 };

@@ -27,10 +27,20 @@ std::optional<Bucket::Entry> Bucket::get(const std::string& key) {
   return Entry{key, std::move(message->data), message->sequence, false};
 }
 
-std::vector<Bucket::Entry> Bucket::all() {
+std::vector<Bucket::Entry> Bucket::all(const std::string& pattern) {
   std::vector<Entry> entries;
-  for (const std::string& subject : stream_.subjects(prefix_ + ">")) {
+  for (const std::string& subject : stream_.subjects(prefix_ + pattern)) {
     if (auto entry = get(subject.substr(prefix_.size()))) entries.push_back(*std::move(entry));
+  }
+  return entries;
+}
+
+std::vector<Bucket::Entry> Bucket::changes_since(std::uint64_t revision) {
+  std::vector<Entry> entries;
+  while (auto message = stream_.next(prefix_ + ">", revision + 1)) {
+    revision = message->sequence;
+    entries.push_back({message->subject.substr(prefix_.size()), std::move(message->data), revision,
+                       is_removal(message->headers)});
   }
   return entries;
 }

@@ -32,8 +32,12 @@ class Bucket {
 
   /// Returns the value, if the key has one.
   std::optional<Entry> get(const std::string& key);
-  /// Returns all values.
-  std::vector<Entry> all();
+  /// Returns the values of all keys that match the pattern.
+  std::vector<Entry> all(const std::string& pattern = ">");
+  /// Returns the revision of the newest change; 0: there was none.
+  std::uint64_t last_revision() { return stream_.last_sequence(); }
+  /// Returns the last change of each key that has changed after the revision, in ascending order.
+  std::vector<Entry> changes_since(std::uint64_t revision);
   /// Replaces the value if the key has the revision, and returns the new revision. Throws NatsError
   /// (kind `conflict`) if the key has another revision.
   std::uint64_t put(const std::string& key, const std::string& value, std::uint64_t revision);

@@ -211,6 +211,12 @@ std::optional<StoredMessage> Stream::next(const std::string& subject, std::uint6
   return get({{"next_by_subj", subject}, {"seq", from}});
 }
 
+std::uint64_t Stream::last_sequence() {
+  const Json answer = call("INFO", Json::object());
+  if (auto error = find_stream_error(answer, name_)) throw NatsError(*error);
+  return answer.at("state").at("last_seq");
+}
+
 std::vector<std::string> Stream::subjects(const std::string& pattern) {
   std::vector<std::string> subjects;
   for (;;) {  // the server lists at most some thousands at once

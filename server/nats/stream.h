@@ -59,6 +59,8 @@ class Stream {
   std::optional<StoredMessage> find(std::uint64_t sequence);
   /// Returns the first message of the subject with at least this sequence, if any.
   std::optional<StoredMessage> next(const std::string& subject, std::uint64_t from);
+  /// Returns the sequence of the newest message that the stream has had; 0: none.
+  std::uint64_t last_sequence();
   /// Returns the subjects that have messages.
   std::vector<std::string> subjects(const std::string& pattern);
   /// Removes the subject's messages before this sequence. The subject may contain wildcards.

@@ -6,6 +6,7 @@
 #include "tests/bench/accuracy/accuracy.h"
 #include "tests/bench/cluster/cluster.h"
 #include "tests/bench/cluster/relays.h"
+#include "tests/bench/cluster/scale.h"
 #include "tests/bench/codec/codec.h"
 #include "tests/bench/compare.h"
 #include "tests/bench/document/document.h"
@@ -50,6 +51,7 @@ int run_command(int argc, char** argv) {
   add_recovery_command(app, exit_code);
   add_cluster_command(app, exit_code);
   add_relays_command(app, exit_code);
+  add_scale_command(app, exit_code);
   add_output_command(app, exit_code);
   add_race_command(app, exit_code);
   add_document_command(app, exit_code);

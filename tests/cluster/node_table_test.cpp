@@ -55,6 +55,29 @@ TEST(NodeTableTest, TheEndOfANodeDoesNotChangeTheOrderOfTheOthers) {
   }
 }
 
+TEST(NodeTableTest, CountsTheNodesThatComeFirst) {
+  ManualClock clock;
+  NodeTable table(clock);
+  table.note(make_node("silent"), 1);
+  clock.advance(milliseconds(1000));
+  NodeInfo full = make_node("full");
+  full.accepts = false;
+  table.note(full, 2);
+  NodeInfo old = make_node("old");
+  old.instruction_set = "sse";
+  table.note(old, 3);
+  for (const char* const name : {"a", "b", "c"}) table.note(make_node(name), 4);
+  for (std::uint64_t session = 1; session <= 20; ++session) {
+    const auto order = rank_nodes(session, {"a", "b", "c"});
+    for (std::size_t place = 0; place < order.size(); ++place) {
+      EXPECT_EQ(table.count_before(
+                    order[place], session, milliseconds(1000),
+                    [](const NodeInfo& node) { return node.instruction_set == "baseline"; }),
+                place);
+    }
+  }
+}
+
 TEST(NodeTableTest, SessionsAreSpreadOverTheNodes) {
   std::map<std::string, int> first;
   for (std::uint64_t session = 1; session <= 300; ++session) {

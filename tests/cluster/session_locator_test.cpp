@@ -98,5 +98,37 @@ TEST_F(SessionLocatorTest, ARefreshFindsWhatTheWatchHasMissed) {
   EXPECT_TRUE(other.all().empty());
 }
 
+TEST_F(SessionLocatorTest, ARefreshReadsANewBucketCompletely) {
+  SessionLocator other(connection);
+  for (int i = 0; i < 3; ++i) locator.create(make(locator, ""));
+  other.refresh();
+  ASSERT_EQ(other.all().size(), 3U);
+  connection.request("$JS.API.STREAM.DELETE.KV_vat-sessions", {}, std::chrono::milliseconds(5000));
+  SessionLocator later(connection);
+  const LocatedSession created = later.create(make(later, "pool"));
+  other.refresh();
+  ASSERT_EQ(other.all().size(), 1U);
+  EXPECT_EQ(other.find(created.number)->name, "pool");
+}
+
+TEST_F(SessionLocatorTest, SessionsAreListedByOwner) {
+  const LocatedSession first = locator.create(make(locator, ""));
+  const LocatedSession second = locator.create(make(locator, ""));
+  const auto numbers_of = [&](const std::string& owner) {
+    std::vector<std::uint64_t> numbers;
+    for (const LocatedSession& one : locator.sessions_of(owner)) numbers.push_back(one.number);
+    return numbers;
+  };
+  EXPECT_THAT(locator.owners(), testing::ElementsAre("a"));
+  EXPECT_THAT(numbers_of("a"), testing::ElementsAre(first.number, second.number));
+  const LocatedSession taken = locator.take(first, "b");
+  EXPECT_THAT(locator.owners(), testing::ElementsAre("a", "b"));
+  EXPECT_THAT(numbers_of("a"), testing::ElementsAre(second.number));
+  EXPECT_THAT(numbers_of("b"), testing::ElementsAre(first.number));
+  locator.release(taken, "c");
+  EXPECT_THAT(locator.owners(), testing::ElementsAre("", "a"));
+  EXPECT_THAT(numbers_of("c"), testing::IsEmpty());
+}
+
 }  // namespace
 }  // namespace vat::test::session_locator_test

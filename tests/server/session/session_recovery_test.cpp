@@ -315,18 +315,27 @@ class RecentState : public SessionRecoveryTest {
     storage.checkpoint_bytes_per_second = 1;
     begin();
     client().result("control.pause");
-    for (int i = 0; i < 20; ++i) {
+    int commands = 0;
+    const auto command = [&] {
       client().result("control.step", {{"ticks", 10}});
-      client().result("world.set_gravity", {{"gravity", {0, 0.1 * i, -9}}});
+      client().result("world.set_gravity", {{"gravity", {0, 0.01 * ++commands, -9}}});
       life->server.flush();
       clock.advance(1s);
-    }
+    };
+    while (commands < 20) command();
+    // A state is written after work that takes 20 times as long as the state, by measured times.
+    const auto earlier = written();
+    while (commands < 1000 && written() == earlier) command();
     before = life->hash();
     end_by_crash();
   }
   std::string file() const {
     for (const auto& entry : fs::directory_iterator(data + "/recent")) return entry.path();
-    throw std::runtime_error("there is no recent state");
+    return {};
+  }
+  /// Returns the time at which the recent state was written.
+  fs::file_time_type written() const {
+    return file().empty() ? fs::file_time_type() : fs::last_write_time(file());
   }
   std::string before;
 };
