@@ -1,5 +1,6 @@
 #include "server/nats/stream.h"
 
+#include <algorithm>
 #include <chrono>
 #include <future>
 #include <thread>
@@ -14,7 +15,8 @@ constexpr Stream::Milliseconds kAnswerTime(1000);
 constexpr Stream::Milliseconds kAppendTime(500);
 constexpr Stream::Milliseconds kRepeatTime(12'000);  // an election takes up to 10 s
 constexpr Stream::Milliseconds kRepeatInterval(100);
-constexpr Stream::Milliseconds kCreateTime(30'000);  // until new servers have elected a leader
+constexpr Stream::Milliseconds kConcurrentTime(10'000);  // greatest age of an unordered message
+constexpr Stream::Milliseconds kCreateTime(30'000);      // until new servers have elected a leader
 constexpr Stream::Milliseconds kCreateInterval(250);
 // Codes of JetStream.
 constexpr int kNotFound = 10037;
@@ -22,6 +24,7 @@ constexpr int kStreamNotFound = 10059;
 constexpr int kWrongLastSequence = 10071;
 constexpr int kNoReplicas = 10074;
 constexpr int kTooFewPeers = 10005;
+constexpr int kSameIsInProcess = 10158;
 constexpr int kNameInUse = 10058;
 constexpr int kMaxReplicas = 3;
 
@@ -30,9 +33,10 @@ std::optional<NatsError> find_stream_error(const Json& answer, const std::string
   const auto error = answer.find("error");
   if (error == answer.end()) return {};
   const int code = error->value("err_code", 0);
-  const auto kind = code == kWrongLastSequence       ? NatsError::Kind::conflict
-                    : error->value("code", 0) == 503 ? NatsError::Kind::unreachable
-                                                     : NatsError::Kind::refused;
+  const auto kind = code == kWrongLastSequence ? NatsError::Kind::conflict
+                    : error->value("code", 0) == 503 || code == kSameIsInProcess
+                        ? NatsError::Kind::unreachable
+                        : NatsError::Kind::refused;
   return NatsError(kind, operation + ": " + error->value("description", std::string("an error")));
 }
 
@@ -105,6 +109,8 @@ Stream::Stream(NatsConnection& connection, const Settings& settings)
 }
 
 void Stream::create(const Settings& settings) {
+  const Milliseconds id_time =
+      settings.max_age.count() == 0 ? kConcurrentTime : std::min(kConcurrentTime, settings.max_age);
   Json config{
       {"name", name_},
       {"subjects", {settings.subjects}},
@@ -114,7 +120,7 @@ void Stream::create(const Settings& settings) {
        settings.max_per_subject == 0 ? -1 : static_cast<std::int64_t>(settings.max_per_subject)},
       {"max_age", std::chrono::nanoseconds(settings.max_age).count()},
       {"discard", settings.max_per_subject == 0 ? "old" : "new"},
-      {"duplicate_window", std::chrono::nanoseconds(std::chrono::milliseconds(100)).count()}};
+      {"duplicate_window", std::chrono::nanoseconds(id_time).count()}};
   if (!settings.republish.empty()) {
     config["republish"] = {{"src", ">"}, {"dest", settings.republish + ".>"}};
   }
@@ -150,6 +156,10 @@ void Stream::send(const std::string& subject, const NatsConnection::Headers& hea
                                                 subject + ": an invalid acknowledgement"));
                         }
                         if (auto error = find_stream_error(answer, subject)) return done(*error);
+                        if (answer.value("duplicate", false)) {
+                          return done(NatsError(NatsError::Kind::conflict,
+                                                subject + ": another message was first"));
+                        }
                         done(answer.value("seq", std::uint64_t{0}));
                       });
 }
@@ -157,6 +167,10 @@ void Stream::send(const std::string& subject, const NatsConnection::Headers& hea
 void Stream::append(const std::string& subject, const std::string& data, std::uint64_t expected,
                     const NatsConnection::Headers& headers, std::function<void(Appended)> done) {
   NatsConnection::Headers all{{"Nats-Expected-Last-Subject-Sequence", std::to_string(expected)}};
+  // Groups of servers compare the sequence before they order concurrent messages, and would store
+  // several with the same `expected`. They compare the identifiers of messages after it. The
+  // sequence 0 is compared after it as well.
+  if (expected > 0) all.emplace_back("Nats-Msg-Id", subject + "." + std::to_string(expected));
   all.insert(all.end(), headers.begin(), headers.end());
   send(subject, all, data, std::move(done));
 }

@@ -46,6 +46,45 @@ TEST_F(Nats, AWriteToABucketRequiresTheRevisionThatItReplaces) {
   EXPECT_EQ(bucket.all().size(), 2U);
 }
 
+/// Concurrent writes to one key of a group of servers. The parameter: whether the key has a value.
+class ConcurrentWriters : public testing::TestWithParam<bool> {};
+
+TEST_P(ConcurrentWriters, OnlyOneReplacesARevision) {
+  constexpr std::size_t kWriters = 8;
+  constexpr int kRounds = 20;
+  NatsServers servers(3);
+  std::vector<std::unique_ptr<NatsConnection>> connections;
+  std::vector<std::unique_ptr<Bucket>> buckets;
+  for (std::size_t i = 0; i < kWriters; ++i) {
+    connections.push_back(std::make_unique<NatsConnection>(
+        NatsSettings{{servers.urls()[i % servers.size()]}, "test", {}, {}, {}, {}}));
+    buckets.push_back(std::make_unique<Bucket>(*connections.back(), "sessions", milliseconds(0)));
+  }
+  for (int round = 0; round < kRounds; ++round) {
+    const std::string key = "s" + std::to_string(round);
+    const std::uint64_t revision = GetParam() ? buckets[0]->create(key, "0") : Bucket::kNone;
+    std::vector<std::future<std::optional<NatsError::Kind>>> writes;
+    for (std::size_t i = 0; i < kWriters; ++i) {
+      writes.push_back(std::async(std::launch::async, [&, i] {
+        return failure([&] { buckets[i]->put(key, std::to_string(i), revision); });
+      }));
+    }
+    std::size_t writer = kWriters;
+    for (std::size_t i = 0; i < kWriters; ++i) {
+      const auto error = writes[i].get();
+      if (!error) {
+        EXPECT_EQ(writer, kWriters) << "another one has written";
+        writer = i;
+      } else {
+        EXPECT_EQ(error, NatsError::Kind::conflict);
+      }
+    }
+    EXPECT_EQ(buckets[0]->get(key)->value, std::to_string(writer));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(OfAKey, ConcurrentWriters, testing::Bool());
+
 TEST_F(Nats, APurgeRemovesTheKeysOfAPattern) {
   Bucket bucket(connection, "sessions", milliseconds(0));
   bucket.create("s1.a", "1");
