@@ -124,7 +124,15 @@ void Stream::create(const Settings& settings) {
   if (!settings.republish.empty()) {
     config["republish"] = {{"src", ">"}, {"dest", settings.republish + ".>"}};
   }
-  if (stream_error_code(call("INFO", Json::object())) == 0) return;
+  const Json existing = call("INFO", Json::object());
+  if (stream_error_code(existing) == 0) {
+    Json changed = existing.at("config");
+    if (changed.at("duplicate_window") == config.at("duplicate_window")) return;
+    changed["duplicate_window"] = config.at("duplicate_window");  // an older version has made it
+    const Json answer = call("UPDATE", changed);
+    if (auto error = find_stream_error(answer, name_)) throw NatsError(*error);
+    return;
+  }
   Json answer = call("CREATE", config);
   const int code = stream_error_code(answer);
   if (code == kNoReplicas || code == kTooFewPeers) {

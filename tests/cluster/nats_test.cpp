@@ -46,6 +46,24 @@ TEST_F(Nats, AWriteToABucketRequiresTheRevisionThatItReplaces) {
   EXPECT_EQ(bucket.all().size(), 2U);
 }
 
+TEST_F(Nats, ABucketOfAnOlderVersionRemembersIdentifiersLonger) {
+  const auto ask = [&](const std::string& method, const Json& params) {
+    return Json::parse(
+        connection
+            .request("$JS.API.STREAM." + method + ".KV_old", params.dump(), milliseconds(5000))
+            .data);
+  };
+  ask("CREATE", {{"name", "KV_old"},
+                 {"subjects", {"$KV.old.>"}},
+                 {"storage", "file"},
+                 {"max_msgs_per_subject", 1},
+                 {"discard", "new"},
+                 {"duplicate_window", 100'000'000}});
+  Bucket bucket(connection, "old", milliseconds(0));
+  EXPECT_EQ(ask("INFO", Json::object()).at("config").at("duplicate_window"), 10'000'000'000);
+  EXPECT_GT(bucket.create("s1", "a"), 0U);
+}
+
 /// Concurrent writes to one key of a group of servers. The parameter: whether the key has a value.
 class ConcurrentWriters : public testing::TestWithParam<bool> {};
 
