@@ -150,7 +150,7 @@ std::variant<SessionId, RpcError> SessionDirectory::create(std::string name, con
       environment);
   if (stored) {
     core->history().keep_in(std::make_unique<SessionLog>(
-        *resources_.storage, number, SessionLog::Place{1, 0, false, stored->log_bytes},
+        *resources_.storage, number, SessionLog::Place{1, 0, false, stored->log_bytes, {}},
         resources_.cluster ? resources_.cluster->replica_of(number) : nullptr));
   }
   const auto session = std::make_shared<Session>(std::move(core), nullptr, resources_.pool,

@@ -12,6 +12,8 @@ namespace vat {
 namespace {
 
 constexpr auto kProgressInterval = std::chrono::seconds(1);
+// A take-over begins after the wait for a lease, so it may repeat less than a restart.
+constexpr int kReplicaPart = 4;
 constexpr std::size_t kHashesAtOnce = 512;  // about ten seconds
 
 std::size_t bytes_of(std::span<const LogEntry> entries) {
@@ -38,10 +40,11 @@ SessionLog::SessionLog(Storage& storage, std::uint64_t session, const Place& pla
       session_(session),
       replica_(std::move(replica)),
       last_(place.last),
-      pace_(storage.settings().checkpoint_after),
+      pace_(storage.settings().checkpoint_after / (replica_ == nullptr ? 1 : kReplicaPart)),
       stored_position_(place.position),
       stored_last_(place.last) {
   storage_.open_log();
+  pace_.add_work(place.work);
   writing_->needs_checkpoint = place.needs_checkpoint;
   writing_->log_bytes = place.log_bytes;
 }

@@ -55,8 +55,9 @@ class SessionLog {
   struct Place {
     std::uint64_t last = 0;  ///< sequence of the last stored entry
     std::uint64_t position = 0;
-    bool needs_checkpoint = false;  ///< the log alone cannot reproduce this state
-    std::size_t log_bytes = 0;      ///< size of the stored entries
+    bool needs_checkpoint = false;    ///< the log alone cannot reproduce this state
+    std::size_t log_bytes = 0;        ///< size of the stored entries
+    CheckpointPace::Seconds work{0};  ///< computing time since the last stored state
   };
   /// The storage must outlive the log. Without a replica (null), the data folder has the only copy.
   /// Otherwise the data folder has a working copy for reads: an entry counts as stored if the

@@ -104,6 +104,7 @@ Simulation SessionRecovery::load_scene(std::uint64_t sequence) {
 
 void SessionRecovery::repeat_log(SessionCore& core) {
   VAT_CHECK(core.history().log() == nullptr);
+  const auto begin = CostClock::now();
   try {
     if (start_) {
       // The core has the checkpoint's simulation already.
@@ -114,6 +115,7 @@ void SessionRecovery::repeat_log(SessionCore& core) {
   } catch (const Diverged& difference) {
     diverge(core, {core.run().position(), core.run().tick(), difference.what()});
   }
+  work_ = CostClock::now() - begin;
 }
 
 void SessionRecovery::finish(SessionCore& core, const SessionEnvironment& environment) {
@@ -131,7 +133,7 @@ void SessionRecovery::finish(SessionCore& core, const SessionEnvironment& enviro
   core.history().keep_in(std::make_unique<SessionLog>(
       storage_, stored_.number,
       SessionLog::Place{last, position, core.history().divergence().has_value(),
-                        storage_.sessions().log_bytes(stored_.number)},
+                        storage_.sessions().log_bytes(stored_.number), work_},
       replica));
   end_recovery(core, environment.clock.now());
 }

@@ -55,6 +55,7 @@ class SessionRecovery {
   const std::atomic<bool>& cancelled_;
   InstructionSet instructions_ = InstructionSet::baseline;
   std::optional<Start> start_;
+  CheckpointPace::Seconds work_{0};     // of repeat_log()
   std::vector<std::uint64_t> refused_;  // sequences of entries that were not marked as refused
 };
 

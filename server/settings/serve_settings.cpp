@@ -309,7 +309,7 @@ std::vector<Setting> storage_group(ServeSettings& s) {
           "checkpoint_seconds", s.storage.checkpoint_after, 0.001, kMaxSeconds,
           "Computing time of all sessions that a recovery repeats at most; longer if storing "
           "states would take more than 5 % of the time, or after a power failure if "
-          "checkpoints would exceed checkpoint_bytes_per_second"),
+          "checkpoints would exceed checkpoint_bytes_per_second; a quarter of it in a cluster"),
       number_setting("checkpoint_bytes_per_second", s.storage.checkpoint_bytes_per_second, 1024,
                      1e9, "Written bytes of all checkpoints; the default is 13 GB per day"),
       time_setting(

@@ -305,6 +305,25 @@ TEST_F(SessionRecoveryTest, AResumedParticipantHasItsRoleGrabsAndFrames) {
   client().result("grab.move", {{"grab", grab}, {"target", {0.5, 0.4, 0.9}}});
 }
 
+TEST_F(SessionRecoveryTest, AfterMuchWorkTheStateIsStored) {
+  const auto checkpoints = [&] {
+    return Database(data + "/checkpoints.db", Database::Mode::read)
+        .number("SELECT count(*) FROM checkpoints");
+  };
+  storage.checkpoint_after = 1h;
+  begin();
+  client().result("control.pause");
+  client().result("control.step", {{"ticks", 300}});  // needs much more than a millisecond
+  clock.advance(1s);
+  storage.checkpoint_after = 1ms;
+  crash();
+  EXPECT_EQ(checkpoints(), 0);
+  client().result("world.set_gravity", {{"gravity", {0, 0, -9}}});
+  clock.advance(1s);
+  life->server.flush();
+  EXPECT_EQ(checkpoints(), 1);
+}
+
 // Recovery from recent states, which are not synchronised.
 
 /// The budget admits one checkpoint. The later states are recent states.

@@ -324,6 +324,34 @@ TEST_F(BoundedLog, CheckpointsStayWithinTheirBytesPerSecond) {
   EXPECT_EQ(store(), Counts(5, 2));
 }
 
+/// A replica that stores nothing.
+class NoReplica final : public SessionReplica {
+  void append(const std::vector<LogEntry>&, Done done) override { done({}); }
+  void refuse(std::uint64_t) override {}
+  void reach(std::uint64_t, Done done) override { done({}); }
+  void configure(const std::string&, const std::string&, Done done) override { done({}); }
+  void write_progress(const SessionProgress&, Done) override {}
+  std::uint64_t mark() const override { return 0; }
+  void write_state(const Checkpoint&, const LogEntry&, std::uint64_t, bool) override {}
+  void flush(Done done) override { done({}); }
+  bool needs_state() const override { return false; }
+  bool is_active() const override { return true; }
+};
+
+// The default of `checkpoint_after` is 2 s, and a quarter of it with a replica.
+TEST_F(BoundedLog, TheWorkOfARecoveryCountsForTheNextCheckpoint) {
+  const auto replica = std::make_shared<NoReplica>();
+  std::uint64_t stored = 0;
+  for (const auto& [work, has_replica, is_stored] :
+       {std::tuple(1.9, false, false), {2.0, false, true}, {0.4, true, false}, {0.5, true, true}}) {
+    SessionLog log(storage, number, {.last = 1, .work = Seconds(work)},
+                   has_replica ? replica : nullptr);
+    keep(log, 1, false);
+    stored += is_stored ? 1 : 0;
+    EXPECT_EQ(storage.counts().checkpoints, stored) << work;
+  }
+}
+
 TEST_F(BoundedLog, BeyondItsLimitItBeginsAtTheCheckpointAndKeepsTheScene) {
   SessionLog log(storage, number, {1, 0});
   append(log, 9);
