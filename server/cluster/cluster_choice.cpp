@@ -8,6 +8,9 @@
 namespace vat {
 namespace {
 
+// A changed session is looked at at once. These looks also find the sessions whose take-over was
+// not possible at that time.
+constexpr std::chrono::milliseconds kLook(1000);
 constexpr std::chrono::milliseconds kOrphanTurn(1000);
 constexpr std::chrono::milliseconds kFailedPause(5000);
 
@@ -24,16 +27,20 @@ void ClusterNode::look_at_sessions(Time now) {
   const auto look_at_all_of = [this](const std::string& owner) {
     for (const LocatedSession& entry : locator_.sessions_of(owner)) look_at(entry);
   };
+  std::map<std::string, Time> silent_looks;
   for (const std::string& owner : locator_.owners()) {
-    if (owner.empty() || owner == name()) {
-      look_at_all_of(owner);
-    } else if (nodes_.silence_of(owner) < Lease::kOthersTime) {
-      silent_looks_.erase(owner);
-    } else if (auto& last = silent_looks_[owner]; last == Time() || now - last >= kOrphanTurn) {
-      last = now;
-      look_at_all_of(owner);
-    }
+    if (owner.empty() || owner == name()) continue;
+    if (nodes_.silence_of(owner) < Lease::kOthersTime) continue;
+    const auto known = silent_looks_.find(owner);
+    const bool is_due = known == silent_looks_.end() || now - known->second >= kLook;
+    silent_looks[owner] = is_due ? now : known->second;
+    if (is_due) look_at_all_of(owner);
   }
+  silent_looks_ = std::move(silent_looks);
+  if (now - last_look_ < kLook) return;
+  last_look_ = now;
+  look_at_all_of("");
+  look_at_all_of(name());
   std::vector<std::uint64_t> numbers;
   {
     const std::lock_guard lock(mutex_);

@@ -182,6 +182,7 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   // Used by the timer's thread only.
   Time last_renewal_{};
   Time last_refresh_{};
+  Time last_look_{};                          // at the node's own and released sessions
   std::map<std::string, Time> silent_looks_;  // by silent node: last look at its sessions
   Time measured_at_{};
   double measured_seconds_ = 0;
