@@ -54,7 +54,7 @@ ClusterNode::ClusterNode(ClusterSettings settings, Storage& storage, Clock& cloc
       relay_connection_(nats_settings(settings_)),
       lease_(clock),
       streams_(connection_),
-      node_bucket_(connection_, "vat-nodes", Lease::kOthersTime),
+      node_bucket_(connection_, "vat-nodes", settings_.entry_life.value_or(Lease::kOthersTime)),
       nodes_(clock),
       locator_(connection_),
       tokens_(settings_.key.empty() ? nullptr

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <chrono>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +19,8 @@ struct ClusterSettings {
   std::string credentials;
   std::string key_file;  ///< file with `key`; empty: a variable of the environment has it
   std::string key;       ///< key for signed tokens; empty: tokens are not signed
+  /// Time for which NATS keeps the node's entry. The default is that of the lease.
+  std::optional<std::chrono::milliseconds> entry_life;
 
   bool is_used() const { return !servers.empty(); }
   bool is_relay() const { return route == "relay"; }

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <iostream>
@@ -16,6 +17,7 @@
 #include "server/cluster/cluster_node.h"
 #include "server/operations/log_format.h"
 #include "server/storage/storage.h"
+#include "tests/bench/cluster/slow_clock.h"
 
 namespace vat::bench {
 namespace {
@@ -24,20 +26,23 @@ constexpr char kNodesReady = 'r';
 constexpr char kCreateSessions = 'c';
 constexpr char kTellCounts = 't';
 constexpr int kLook = 20;                // [ms] between looks at the leases
-constexpr int kNodesPatience = 300'000;  // [ms]
+constexpr int kNodesPatience = 600'000;  // [ms]
 constexpr double kCoresOfNode = 8;
 
 /// A node, its storage, and a host that only counts.
 class SimulatedNode final : public ClusterHost {
  public:
   SimulatedNode(const SimulatedNodesSettings& settings, const std::string& name)
-      : storage_(settings.folder / name, {}, clock_),
+      : clock_(settings.slow_motion),
+        storage_(settings.folder / name, {}, clock_),
         node_(
             [&] {
               ClusterSettings cluster;
               cluster.servers = settings.servers;
               cluster.node = name;
               cluster.public_url = "ws://" + name + "/ws";
+              cluster.entry_life =
+                  Lease::kOthersTime * static_cast<int>(std::ceil(settings.slow_motion));
               return cluster;
             }(),
             storage_, clock_, kCoresOfNode, "simulated") {
@@ -68,7 +73,7 @@ class SimulatedNode final : public ClusterHost {
   void cluster_changed() override {}
 
  private:
-  SystemClock clock_;
+  SlowClock clock_;
   Storage storage_;
   std::atomic<std::uint64_t> taken_ = 0;
   std::atomic<std::uint64_t> lost_ = 0;
@@ -83,11 +88,11 @@ void put_all(int file, const void* data, std::size_t size) {
   }
 }
 
-void run_nodes(const SimulatedNodesSettings& settings, int from, int to) {
+void run_nodes(const SimulatedNodesSettings& settings, const std::vector<std::string>& names,
+               int from, int to) {
   std::vector<std::unique_ptr<SimulatedNode>> nodes;
-  for (std::size_t i = 0; i < settings.count; ++i) {
-    nodes.push_back(
-        std::make_unique<SimulatedNode>(settings, "n" + std::to_string(settings.first + i)));
+  for (const std::string& name : names) {
+    nodes.push_back(std::make_unique<SimulatedNode>(settings, name));
   }
   put_all(to, &kNodesReady, 1);
   for (;;) {
@@ -112,6 +117,9 @@ void run_nodes(const SimulatedNodesSettings& settings, int from, int to) {
 }  // namespace
 
 SimulatedNodes::SimulatedNodes(const SimulatedNodesSettings& settings) {
+  for (std::size_t i = 0; i < settings.count; ++i) {
+    names_.push_back("n" + std::to_string(settings.first + i));
+  }
   std::array<int, 2> to{};
   std::array<int, 2> from{};
   if (pipe(to.data()) != 0 || pipe(from.data()) != 0) throw std::runtime_error("no pipe");
@@ -126,7 +134,7 @@ SimulatedNodes::SimulatedNodes(const SimulatedNodesSettings& settings) {
       start_log("error", false);
       // The connections of the process share the thread that delivers messages.
       setenv("NATS_DEFAULT_TO_LIB_MSG_DELIVERY", "1", 1);
-      run_nodes(settings, to[0], from[1]);
+      run_nodes(settings, names_, to[0], from[1]);
     } catch (const std::exception& error) {
       std::cerr << "simulated nodes: " << error.what() << '\n';
       status = 1;

@@ -15,6 +15,7 @@ struct SimulatedNodesSettings {
   std::size_t first = 0;             ///< number of the first node
   std::size_t count = 0;             ///< of nodes
   std::size_t sessions = 0;          ///< of each node
+  double slow_motion = 1;            ///< factor by which the nodes' clock is slower
 };
 
 /// Events of the nodes of a process since its start.
@@ -37,6 +38,8 @@ class SimulatedNodes {
   void wait_ready();
   /// Creates the sessions.
   void create_sessions();
+  /// Returns the names of the nodes.
+  const std::vector<std::string>& names() const { return names_; }
   SimulatedNodesCounts counts();
   /// Sends SIGKILL, and waits for the end.
   void kill();
@@ -46,6 +49,7 @@ class SimulatedNodes {
   void ask(char command);
   void read(void* data, std::size_t size);
 
+  std::vector<std::string> names_;
   int process_ = -1;  ///< -1: it has ended
   int to_ = -1;
   int from_ = -1;

@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
-constexpr milliseconds kBetweenCommands{200};
+constexpr milliseconds kBetweenFaultCommands{200};
 constexpr const char* kInternalErrorText = "-32603";
 
 double now() {
@@ -30,7 +30,7 @@ class FaultClient {
 
   void command() {
     if (!caller_) enter(place_.admin);
-    const auto next = steady_clock::now() + kBetweenCommands;
+    const auto next = steady_clock::now() + kBetweenFaultCommands;
     give_command(++round_);
     const Json state = caller_->call("session.list");
     for (const Json& session : state.at("result").at("sessions")) {

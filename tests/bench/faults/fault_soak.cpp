@@ -38,7 +38,7 @@ constexpr double kMaxMemoryRatio = 1.1;
 constexpr std::size_t kMaxMemory = std::size_t{400} << 20;
 constexpr std::int64_t kBallast = std::int64_t{450} << 20;
 constexpr std::int64_t kClockStep = std::int64_t{3600} * 1'000'000'000;  // [ns]
-constexpr std::chrono::minutes kRecoveryPatience{1};
+constexpr std::chrono::minutes kFaultPatience{1};
 constexpr std::chrono::seconds kEffectPatience{10};
 /// By then the server has released unused memory after it has closed all connections.
 constexpr steady_clock::duration kRest = 2 * MemoryReturn::kInterval + std::chrono::seconds(2);
@@ -122,7 +122,7 @@ class FaultSoak {
           (places_.empty() || sessions_now.size() == places_.size())) {
         break;
       }
-      if (steady_clock::now() > begin + kRecoveryPatience) {
+      if (steady_clock::now() > begin + kFaultPatience) {
         throw std::runtime_error("sessions are missing: " + sessions_now.dump());
       }
       caller.read_for(std::chrono::milliseconds(10));
