@@ -9,7 +9,6 @@ namespace {
 
 using std::chrono::steady_clock;
 
-constexpr std::chrono::milliseconds kSightInterval(20);
 constexpr std::chrono::minutes kSightPatience(2);
 
 }  // namespace
@@ -21,14 +20,17 @@ FollowingViewers::FollowingViewers(const ClusterNodes& nodes, std::size_t count)
   try {
     wait_for_frames();
   } catch (...) {
-    ended_ = true;
-    for (std::thread& thread : threads_) thread.join();
+    end();
     throw;
   }
   take_pauses();
 }
 
 FollowingViewers::~FollowingViewers() {
+  end();
+}
+
+void FollowingViewers::end() {
   ended_ = true;
   for (std::thread& thread : threads_) thread.join();
 }
@@ -44,6 +46,7 @@ void FollowingViewers::watch(const ClusterNodes& nodes, std::size_t viewer) {
   } catch (...) {
     const std::lock_guard lock(mutex_);
     failure_ = std::current_exception();
+    changed_.notify_all();
   }
 }
 
@@ -55,22 +58,18 @@ void FollowingViewers::note(std::size_t viewer, steady_clock::time_point frame) 
     sight.longest_pause = std::max(sight.longest_pause, pause);
   }
   sight.last_frame = frame;
+  changed_.notify_all();
 }
 
 void FollowingViewers::wait_for_frames() {
   const auto begin = steady_clock::now();
-  for (;;) {
-    {
-      const std::lock_guard lock(mutex_);
-      if (failure_) std::rethrow_exception(failure_);
-      if (std::ranges::all_of(sights_, [&](const Sight& s) { return s.last_frame > begin; }))
-        return;
-    }
-    if (steady_clock::now() > begin + kSightPatience) {
-      throw std::runtime_error("a viewer receives no frames any more");
-    }
-    std::this_thread::sleep_for(kSightInterval);
-  }
+  std::unique_lock lock(mutex_);
+  const bool has_changed = changed_.wait_for(lock, kSightPatience, [&] {
+    return failure_ || std::ranges::all_of(
+                           sights_, [&](const Sight& sight) { return sight.last_frame > begin; });
+  });
+  if (failure_) std::rethrow_exception(failure_);
+  if (!has_changed) throw std::runtime_error("a viewer receives no frames any more");
 }
 
 std::vector<double> FollowingViewers::take_pauses() {

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <cstddef>
 #include <exception>
 #include <memory>
@@ -34,10 +35,13 @@ class FollowingViewers {
     double longest_pause = 0;  ///< [s]
   };
   void watch(const ClusterNodes& nodes, std::size_t viewer);
+  /// Ends all threads.
+  void end();
   void note(std::size_t viewer, std::chrono::steady_clock::time_point frame);
 
   std::atomic<bool> ended_ = false;
-  std::mutex mutex_;  // guards the members below
+  std::condition_variable changed_;  // a sight or the failure
+  std::mutex mutex_;                 // guards the members below
   std::vector<Sight> sights_;
   std::exception_ptr failure_;
   std::vector<std::thread> threads_;
