@@ -1,4 +1,5 @@
 import { createServer } from 'node:http';
+import type { ServerResponse } from 'node:http';
 import type { AddressInfo } from 'node:net';
 import { once } from 'node:events';
 import WebSocket, { WebSocketServer } from 'ws';
@@ -26,14 +27,9 @@ export class Proxy {
   private isFrozen = false;
   private readonly pages = new Set<WebSocket>();
   private readonly http = createServer((request, response) => {
-    void fetch(new URL(request.url ?? '/', this.server)).then(async (answer) => {
-      const headers = ['content-type', 'content-security-policy'].map(
-        (name) => [name, answer.headers.get(name) ?? ''] as const,
-      );
-      response.writeHead(answer.status, Object.fromEntries(headers));
-      const isWorker = request.url?.includes('stream.worker') ?? false;
-      const before = Buffer.from(isWorker ? (this.ways.worker ?? '') : '');
-      response.end(Buffer.concat([before, Buffer.from(await answer.arrayBuffer())]));
+    this.forward(request.url ?? '/', response).catch(() => {
+      // The server has ended: the page's request fails too.
+      response.destroy();
     });
   });
   private readonly sockets = new WebSocketServer({ noServer: true });
@@ -72,6 +68,17 @@ export class Proxy {
     const params = { session: 's1', url: String(url) };
     const event = JSON.stringify({ jsonrpc: '2.0', method: 'session.moved', params });
     for (const page of this.pages) page.send(event);
+  }
+
+  private async forward(path: string, response: ServerResponse): Promise<void> {
+    const answer = await fetch(new URL(path, this.server));
+    const headers = ['content-type', 'content-security-policy'].map(
+      (name) => [name, answer.headers.get(name) ?? ''] as const,
+    );
+    const body = Buffer.from(await answer.arrayBuffer());
+    const before = Buffer.from(path.includes('stream.worker') ? (this.ways.worker ?? '') : '');
+    response.writeHead(answer.status, Object.fromEntries(headers));
+    response.end(Buffer.concat([before, body]));
   }
 
   private join(page: WebSocket): void {

@@ -63,7 +63,10 @@ describe('the computing time of ticks', () => {
     expect(profileInWords(profile, 0.02, 1)).toBe(
       'A tick takes 10 ms of the 20 ms that it may take, so the speed is reached. The largest part is finding neighbours: 90 %.',
     );
-    expect(profileInWords(profile, 0.02, 4)).toContain('runs 2.0 times slower than the set speed');
+    expect(profileInWords(profile, 0.02, 4)).toContain('runs 2 times slower than the set speed');
+    const slow = profileInWords({ ...profile, seconds: 17.04 }, 0.02, 1);
+    expect(slow).toContain('A tick takes 17000 ms of the 20 ms');
+    expect(slow).toContain('runs 850 times slower');
   });
 });
 

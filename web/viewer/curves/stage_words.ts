@@ -100,7 +100,8 @@ export function profileInWords(
   speed: number,
 ): string {
   const allowed = tickSeconds / speed;
-  const milliseconds = (value: number): string => `${(1000 * value).toPrecision(2)} ms`;
+  const rounded = (value: number): number => Number(value.toPrecision(2));
+  const milliseconds = (value: number): string => `${rounded(1000 * value)} ms`;
   const [first] = parts;
   const most = first
     ? ` The largest part is ${first.words}: ${Math.round(100 * first.share)} %.`
@@ -108,6 +109,6 @@ export function profileInWords(
   const enough = seconds <= allowed;
   const verdict = enough
     ? 'so the speed is reached.'
-    : `so the simulation runs ${(seconds / allowed).toPrecision(2)} times slower than the set speed. Use fewer particles or a lower speed.`;
+    : `so the simulation runs ${rounded(seconds / allowed)} times slower than the set speed. Use fewer particles or a lower speed.`;
   return `A tick takes ${milliseconds(seconds)} of the ${milliseconds(allowed)} that it may take, ${verdict}${most}`;
 }
