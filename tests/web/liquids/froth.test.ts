@@ -1,6 +1,7 @@
 import { expect, it } from 'vitest';
 import { BodyKind } from '../../../web/client/index';
 import { Froth } from '../../../web/viewer/view/fluid/froth';
+import { kSquareVertices } from '../../../web/viewer/view/particles/impostor';
 import { JoinedColumns } from '../../../web/viewer/view/particles/joined_columns';
 import { ParticleColumns } from '../../../web/viewer/view/particles/particle_columns';
 
@@ -24,6 +25,19 @@ function places(way: (particle: number) => number): Uint16Array<ArrayBuffer> {
   return Uint16Array.from(all, (x, i) => x + (i % 3 === 0 ? way(Math.floor(i / 3)) / 0.001 : 0));
 }
 
+interface ParticleFroth {
+  foam: number;
+  lone: number;
+}
+
+function frothOf({ columns, geometry }: JoinedColumns): ParticleFroth[] {
+  const { values } = columns.froth;
+  return Array.from({ length: geometry.drawRange.count / kSquareVertices }, (_, i) => ({
+    foam: values[2 * i]! / 255,
+    lone: values[2 * i + 1]! / 255,
+  }));
+}
+
 class Scene {
   readonly columns = new ParticleColumns(kSide ** 3 + 1);
   readonly joined = new JoinedColumns();
@@ -34,7 +48,7 @@ class Scene {
     this.columns.show({ ...block, positions: places(way) }, kGrid);
   }
 
-  follow(seconds = kSeconds): { foam: number; lone: number }[] {
+  follow(seconds = kSeconds): ParticleFroth[] {
     const liquid = { body: 1, row: 0, columns: this.columns, valueQuantum: 1, radius: kRadius };
     this.joined.update([liquid]);
     this.froth.follow([liquid], this.joined, {
@@ -42,16 +56,12 @@ class Scene {
       seconds,
       height: kHeight,
     });
-    const { froth } = this.joined;
-    return Array.from({ length: this.columns.count }, (_, i) => ({
-      foam: froth[4 * i]! / 255,
-      lone: froth[4 * i + 1]! / 255,
-    }));
+    return frothOf(this.joined);
   }
 }
 
 /** Returns the froth after all particles moved with their speeds [m/s]. */
-function after(speed: (particle: number) => number): { foam: number; lone: number }[] {
+function after(speed: (particle: number) => number): ParticleFroth[] {
   const scene = new Scene();
   scene.show((i) => -speed(i) * kSeconds);
   scene.show(() => 0);
@@ -119,7 +129,7 @@ it('follows particles by their numbers', () => {
     const liquid = { body: 1, row: 0, columns, valueQuantum: 1, radius: kRadius };
     joined.update([liquid]);
     froth.follow([liquid], joined, { quantum: 0.001, seconds, height: kHeight });
-    return numbers.map((_, i) => joined.froth[4 * i]! / 255);
+    return frothOf(joined).map(({ foam }) => foam);
   };
   foamOf([3, 7], [0, 5000], 0);
   expect(foamOf([3, 7], [0, 5080], kSeconds)).toEqual([0, 1]);

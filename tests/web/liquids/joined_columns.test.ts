@@ -1,16 +1,17 @@
 import { Color, Mesh } from 'three';
-import type { BufferAttribute } from 'three';
+import type { DataTexture, ShaderMaterial } from 'three';
 import { beforeEach, describe, expect, it } from 'vitest';
 import { BodyKind } from '../../../web/client/index';
 import { kLayers } from '../../../web/viewer/view/base/layers';
 import { sharedUniforms } from '../../../web/viewer/view/bodies/shared_uniforms';
 import { LiquidDrawing } from '../../../web/viewer/view/fluid/liquid_drawing';
-import { bodyUniforms } from '../../../web/viewer/view/particles/impostor';
+import { bodyUniforms, kSquareVertices } from '../../../web/viewer/view/particles/impostor';
 import { JoinedColumns } from '../../../web/viewer/view/particles/joined_columns';
 import { JoinedGrids } from '../../../web/viewer/view/particles/joined_grids';
 import type { GridParticles } from '../../../web/viewer/view/particles/joined_grids';
 import { ParticleColumns } from '../../../web/viewer/view/particles/particle_columns';
 import { sphereMaterial } from '../../../web/viewer/view/particles/sphere_material';
+import type { Texels } from '../../../web/viewer/view/particles/texels';
 
 const kGrid = { origin: [0, 0, 0] as [number, number, number], quantum: 1 };
 const shared = sharedUniforms();
@@ -25,16 +26,17 @@ function show(columns: ParticleColumns, x: number[], numbers?: number[]): void {
 function bodyOf(body: number, x: number[]): GridParticles {
   const columns = new ParticleColumns(x.length);
   show(columns, x);
-  const mesh = (): Mesh =>
-    new Mesh(columns.geometry, sphereMaterial(bodyUniforms(new Color(), shared.look, true), 1));
+  const uniforms = { ...bodyUniforms(new Color(), shared.look, true), ...columns.uniforms };
+  const mesh = (): Mesh => new Mesh(columns.geometry, sphereMaterial(uniforms, 1));
   return { body, row: body + 10, columns, spheres: mesh(), spots: mesh(), valueQuantum: 1 };
 }
 
-/** Returns the values of the shown particles, the first of `step` each. */
-function valuesOf(joined: JoinedColumns, name: string, step = 1): number[] {
-  const { array } = joined.geometry.getAttribute(name) as BufferAttribute;
-  const { instanceCount } = joined.geometry;
-  return Array.from({ length: instanceCount }, (_, i) => array[step * i]!);
+type Numbers = ArrayLike<number>;
+
+/** Returns the first of `size` numbers of each shown particle. */
+function firsts({ values }: { values: Numbers }, size: number): number[] {
+  const count = joined.geometry.drawRange.count / kSquareVertices;
+  return Array.from({ length: count }, (_, i) => values[size * i]!);
 }
 
 let joined: JoinedColumns;
@@ -45,10 +47,11 @@ describe('JoinedColumns', () => {
     const bodies = [bodyOf(1, [10, 20]), bodyOf(2, [30])];
     show(bodies[0]!.columns, [14, 24]);
     joined.update(bodies);
-    expect(valuesOf(joined, 'center', 3)).toEqual([14, 24, 30]);
-    expect(valuesOf(joined, 'before', 3)).toEqual([10, 20, 30]);
-    expect(valuesOf(joined, 'row')).toEqual([12, 12, 13]);
-    expect(valuesOf(joined, 'number')).toEqual([0, 1, 0]);
+    expect(firsts(joined.columns.center, 3)).toEqual([14, 24, 30]);
+    expect(firsts(joined.columns.before, 3)).toEqual([10, 20, 30]);
+    const { values } = joined.columns.names;
+    expect([1, 3, 5].map((i) => values[i])).toEqual([12, 12, 13]); // rows
+    expect(firsts(joined.columns.names, 2)).toEqual([0, 1, 0]);
   });
 
   it('follows growing and shrinking bodies', () => {
@@ -56,20 +59,26 @@ describe('JoinedColumns', () => {
     for (const x of [[1, 2, 3, 4, 5, 6, 7], [8], [], [1, 2]]) {
       show(body.columns, x, x);
       joined.update([body]);
-      expect(valuesOf(joined, 'center', 3)).toEqual(x);
-      expect(valuesOf(joined, 'number')).toEqual(x);
+      expect(firsts(joined.columns.center, 3)).toEqual(x);
+      expect(firsts(joined.columns.names, 2)).toEqual(x);
     }
   });
 
   it('releases buffers that are too small', () => {
     let releases = 0;
-    joined.geometry.addEventListener('dispose', () => ++releases);
+    const many = (count: number): number[] => Array.from({ length: count }, (_, i) => i);
     const body = bodyOf(1, [10]);
     joined.update([body]);
-    const before = releases;
-    show(body.columns, [1, 2, 3, 4, 5, 6, 7]);
+    for (const { texture } of Object.values(joined.columns) as Texels<Uint8Array>[]) {
+      texture.addEventListener('dispose', () => ++releases);
+    }
+    show(body.columns, many(150));
     joined.update([body]);
-    expect(releases).toBe(before + 1);
+    expect(releases).toBe(0);
+    show(body.columns, many(5000));
+    joined.update([body]);
+    expect(releases).toBe(5);
+    expect(firsts(joined.columns.center, 3)).toEqual(many(5000));
   });
 
   it('copies columns after changes only', () => {
@@ -78,9 +87,9 @@ describe('JoinedColumns', () => {
     expect(joined.update(bodies)).toBe(false);
     bodies[1]!.columns.showValues(Int32Array.of(7));
     expect(joined.update(bodies)).toBe(true);
-    expect(valuesOf(joined, 'value')).toEqual([0, 7]);
+    expect(firsts(joined.columns.shown, 1)).toEqual([0, 7]);
     expect(joined.update(bodies.slice(0, 1))).toBe(true);
-    expect(joined.geometry.instanceCount).toBe(1);
+    expect(joined.geometry.drawRange.count).toBe(kSquareVertices);
   });
 });
 
@@ -93,7 +102,7 @@ describe('JoinedGrids', () => {
     const joinedCounts = (): number[] =>
       (grids.group.children as Mesh[])
         .filter(({ visible }) => visible)
-        .map(({ geometry }) => (geometry as JoinedColumns['geometry']).instanceCount);
+        .map(({ geometry }) => geometry.drawRange.count / kSquareVertices);
     bodies[2]!.spheres.visible = false;
     grids.update(bodies);
     expect(joinedCounts()).toEqual([4, 3]); // spots, spheres
@@ -131,17 +140,19 @@ describe('LiquidDrawing', () => {
       const liquid = { body: 1, row, columns, valueQuantum: 1, radius: 1 };
       drawing.update([liquid], { quantum: 1, seconds: 0.02, height: 1 });
     };
-    const froth = (): BufferAttribute =>
-      (drawing.group.children[0] as Mesh).geometry.getAttribute('froth') as BufferAttribute;
+    const { uniforms } = (drawing.group.children[0] as Mesh).material as ShaderMaterial;
+    const texels = (): DataTexture => uniforms.froth_texels!.value as DataTexture;
+    const lone = (particle: number): number =>
+      (texels().image.data as Uint8Array)[2 * particle + 1]!;
     update();
-    expect(froth().getY(3)).toBe(0);
-    const { version } = froth();
+    expect(lone(3)).toBe(0);
+    const { version } = texels();
     drawing.style = 'fluid';
     update();
-    expect(froth().getY(3)).toBeGreaterThan(0.5);
-    expect(froth().getY(1)).toBeLessThan(froth().getY(3));
-    expect(froth().version).toBe(version + 1); // uploaded once
+    expect(lone(3)).toBeGreaterThan(127);
+    expect(lone(1)).toBeLessThan(lone(3));
+    expect(texels().version).toBe(version + 1); // uploaded once
     update();
-    expect(froth().version).toBe(version + 1);
+    expect(texels().version).toBe(version + 1);
   });
 });

@@ -1,11 +1,11 @@
 import { Color, Matrix4, Mesh } from 'three';
-import type { BufferAttribute, ShaderMaterial } from 'three';
+import type { BufferAttribute, DataTexture, ShaderMaterial, Vector4 } from 'three';
 import { beforeEach, describe, expect, it } from 'vitest';
 import type { BodyDescription } from '../../../web/client/index';
 import { kLayers } from '../../../web/viewer/view/base/layers';
 import { sharedUniforms } from '../../../web/viewer/view/bodies/shared_uniforms';
 import { BodyTable } from '../../../web/viewer/view/particles/body_table';
-import { bodyUniforms } from '../../../web/viewer/view/particles/impostor';
+import { bodyUniforms, kSquareVertices } from '../../../web/viewer/view/particles/impostor';
 import { JoinedParticles } from '../../../web/viewer/view/particles/joined_particles';
 import { JoinedSolids } from '../../../web/viewer/view/solids/joined_solids';
 import type { Joinable } from '../../../web/viewer/view/solids/solid';
@@ -112,10 +112,16 @@ describe('JoinedParticles', () => {
     for (const body of bodies) body.spots.visible = false;
     particles.update(bodies);
     expect([spots!.visible, spheres!.visible]).toEqual([false, true]);
-    const columnOf = (name: string) => [...spheres!.geometry.getAttribute(name).array];
-    expect(columnOf('center')).toEqual([0, 0, 0, 1, 0, 0, 0, 0, 5]);
-    expect(columnOf('number')).toEqual([0, 1, 0]);
-    expect(columnOf('row')).toEqual([1, 1, 3]);
+    const { uniforms } = spheres!.material as ShaderMaterial;
+    const texels = (name: string, count: number): number[] => [
+      ...((uniforms[name]!.value as DataTexture).image.data as Uint16Array).subarray(0, count),
+    ];
+    expect(spheres!.geometry.drawRange.count).toBe(3 * kSquareVertices);
+    const { x, w } = uniforms.texel_grid!.value as Vector4;
+    const places = texels('center_texels', 9).map((at) => x + w * at);
+    [0, 0, 0, 1, 0, 0, 0, 0, 5].forEach((at, i) => expect(places[i]).toBeCloseTo(at, 3));
+    expect(texels('before_texels', 9)).toEqual(texels('center_texels', 9));
+    expect(texels('name_texels', 6)).toEqual([0, 1, 1, 1, 0, 3]); // number, row
     const drawn = (): boolean[] => bodies.map((one) => one.spheres.layers.isEnabled(kLayers.scene));
     expect(drawn()).toEqual([false, false]);
     particles.update(bodies.slice(0, 1));

@@ -1,5 +1,5 @@
 import { Matrix4, Vector3 } from 'three';
-import type { BufferAttribute } from 'three';
+import type { DataTexture } from 'three';
 import { describe, expect, it } from 'vitest';
 import { BodyKind } from '../../../web/client/index';
 import type { GridBlock, PoseBlock } from '../../../web/client/index';
@@ -43,15 +43,20 @@ describe('ParticleColumns', () => {
 
   it('sends only the new positions to the graphics', () => {
     const columns = new ParticleColumns(2);
+    const { center_texels: center, before_texels: before, name_texels: names } = columns.uniforms;
+    const versions = (): number[] => [center, before, names].map(({ value }) => value.version);
     columns.show(block([1, 2]), kGrid);
     columns.show(block([3, 4]), kGrid);
-    const versions = (): number[] =>
-      ['center', 'before'].map(
-        (name) => (columns.geometry.getAttribute(name) as BufferAttribute).version,
-      );
-    const [newest, old] = versions();
+    const [newest, old, known] = versions();
     columns.show(block([5, 6]), kGrid);
-    expect(versions()).toEqual([old! + 1, newest]);
+    expect(versions()).toEqual([old! + 1, newest, known]);
+    const data = ({ value }: { value: DataTexture }, count: number): number[] => [
+      ...(value.image.data as Uint16Array).subarray(0, count),
+    ];
+    expect(data(center, 6)).toEqual([5, 0, 0, 6, 0, 0]);
+    expect(data(before, 6)).toEqual([3, 0, 0, 4, 0, 0]);
+    columns.showValues(Int32Array.of(7, 8));
+    expect(data(columns.uniforms.value_texels, 2)).toEqual([7, 8]);
   });
 
   it('knows particles again by their numbers, and has those that come stand still', () => {

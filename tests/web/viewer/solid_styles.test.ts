@@ -8,6 +8,7 @@ import { BodyView } from '../../../web/viewer/view/bodies/body_view';
 import { sharedUniforms } from '../../../web/viewer/view/bodies/shared_uniforms';
 import { solidOf } from '../../../web/viewer/view/solids/solid_of';
 import { Workshop } from '../../../web/viewer/view/surface/workshop';
+import { kSquareVertices } from '../../../web/viewer/view/particles/impostor';
 
 const kBase = { body: 1, name: 'thing', material: 'wood', radius: 0.5 };
 
@@ -92,11 +93,11 @@ describe('The style of solids', () => {
     const [spheres, ...others] = shown(view);
     expect(others).toEqual([]);
     expect(spheres).not.toBe(solid);
-    expect(spheres!.geometry.getAttribute('center').count).toBe(2);
+    expect(spheres!.geometry.drawRange.count).toBe(2 * kSquareVertices);
     const unknown = structuredClone(kCrate);
     delete unknown.shape;
     const [shapeless] = shown(viewOf(unknown));
-    expect(shapeless!.geometry.getAttribute('center').count).toBe(2);
+    expect(shapeless!.geometry.drawRange.count).toBe(2 * kSquareVertices);
   });
 
   it('is a ball for a rigid body of one particle', () => {

@@ -9,7 +9,7 @@ import { kNoValue } from '../colour/maps';
 import { kQuantities, quantityOf } from '../colour/quantity';
 import type { Range } from '../colour/range';
 import { bodyUniforms, kColourSource } from '../particles/impostor';
-import type { BodyUniforms } from '../particles/impostor';
+import type { BodyUniforms, DrawnUniforms } from '../particles/impostor';
 import type { LiquidStyle } from '../base/liquid_style';
 import { bodyColour } from '../base/palette';
 import { ParticleColumns } from '../particles/particle_columns';
@@ -89,8 +89,8 @@ export class BodyView {
     this.places = new BodyPlaces(this.columns, this.group, this.uniforms, radius);
     this.group.matrixAutoUpdate = false;
     this.group.visible = false; // until the first frame
-    this.spots = this.add(shadowMaterial(radius, shared.floor, this.uniforms), kOrder.shadow);
-    this.spheres = this.add(sphereMaterial(this.uniforms, radius), kOrder.solid);
+    this.spots = this.add(shadowMaterial(radius, shared.floor, this.drawn), kOrder.shadow);
+    this.spheres = this.add(sphereMaterial(this.drawn, radius), kOrder.solid);
     this.skin = new Skin(workshop, this.uniforms, onChange);
     this.skinSize = kSkinSizes[kind];
     this.skin.mesh.renderOrder = kOrder.skin;
@@ -109,6 +109,11 @@ export class BodyView {
     if (this.solid) this.solid.finish = look.finish;
     if (uniforms.colour_source.value === kColourSource.body) this.showColour(kColourSource.body);
     this.showOpacity();
+  }
+
+  /** The uniforms of materials that draw its particles. */
+  get drawn(): DrawnUniforms {
+    return { ...this.uniforms, ...this.columns.uniforms };
   }
 
   get count(): number {
@@ -326,7 +331,7 @@ export class BodyView {
 
   private add(material: ShaderMaterial, order: number): Mesh {
     const mesh = new Mesh(this.columns.geometry, material);
-    mesh.frustumCulled = false; // the geometry's bounds do not contain its instances
+    mesh.frustumCulled = false; // the geometry has no bounds
     mesh.renderOrder = order;
     this.group.add(mesh);
     this.materials.push(material);

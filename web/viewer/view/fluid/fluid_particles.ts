@@ -1,6 +1,6 @@
 import { AddEquation, CustomBlending, GLSL3, MaxEquation, OneFactor, ShaderMaterial } from 'three';
-import { kImpostorHit, kImpostorVertexShader, kPlaceOfParticle } from '../particles/impostor';
-import type { BodyUniforms } from '../particles/impostor';
+import { kImpostorHit, kImpostorVertexShader, kSquareOfParticle } from '../particles/impostor';
+import type { DrawnUniforms } from '../particles/impostor';
 import type { BehindUniforms } from './fluid_pass';
 
 const kDepth = /* glsl */ `
@@ -34,7 +34,7 @@ const kThickness = /* glsl */ `
 `;
 
 /** Writes the view distance of the nearest point of each sphere [m], coverage and foam. */
-export function fluidDepthMaterial(body: BodyUniforms, radius: number): ShaderMaterial {
+export function fluidDepthMaterial(body: DrawnUniforms, radius: number): ShaderMaterial {
   return new ShaderMaterial({
     glslVersion: GLSL3,
     vertexShader: kImpostorVertexShader,
@@ -62,7 +62,7 @@ const kShadow = /* glsl */ `
 
 /** A square for each particle that faces the sun. */
 const kShadowPlace = /* glsl */ `
-  ${kPlaceOfParticle}
+  ${kSquareOfParticle}
   uniform float radius;
   out vec2 spot;
   out vec3 base;
@@ -71,14 +71,15 @@ const kShadowPlace = /* glsl */ `
   flat out vec2 matter;
 
   void main() {
+    read_particle();
     Body body = this_body();
     float size = radius_of_body(radius);
     matter = vec2(size / ${kBlurSize}, density_of_body());
     vec3 world = (body.to_world * vec4(place_of_particle(), 1.0)).xyz;
     vec4 center_in_view = viewMatrix * vec4(world, 1.0);
-    spot = position.xy;
+    spot = corner_of_square();
     base = body.colour;
-    gl_Position = projectionMatrix * (center_in_view + vec4(size * position.xy, 0.0, 0.0));
+    gl_Position = projectionMatrix * (center_in_view + vec4(size * spot, 0.0, 0.0));
     near = 0.5 * gl_Position.z + 0.5;
     if (is_clipped(world)) gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside of the picture
   }
@@ -89,7 +90,7 @@ const kShadowPlace = /* glsl */ `
  * that is nearest to the sun: 1 - its depth in the map.
  */
 export function fluidShadowMaterial(
-  body: BodyUniforms,
+  body: DrawnUniforms,
   radius: number,
   behind: BehindUniforms,
 ): ShaderMaterial {
@@ -110,7 +111,7 @@ export function fluidShadowMaterial(
 
 /** Sums the liquid thickness along each ray [m], and its colour. */
 export function fluidThicknessMaterial(
-  body: BodyUniforms,
+  body: DrawnUniforms,
   radius: number,
   behind: BehindUniforms,
 ): ShaderMaterial {

@@ -1,4 +1,4 @@
-import type { CopiedColumns } from '../particles/particle_columns';
+import type { JoinedColumns } from '../particles/joined_columns';
 import { FrothCells } from './froth_cells';
 import type { LiquidBody, LiquidTime } from './liquid_body';
 
@@ -28,16 +28,18 @@ export class Froth {
   /** The foam of each particle number of each body. */
   private readonly foam = new Map<number, Float32Array>();
 
-  /** Computes the foam of newer columns. Writes four bytes per particle; the last two are unused. */
+  /** Computes the foam of newer columns, and writes it to them. */
   follow(
     liquids: readonly LiquidBody[],
-    { columns, froth: to }: { columns: CopiedColumns; froth: Uint8Array },
+    { columns }: JoinedColumns,
     { quantum, seconds, height }: LiquidTime,
   ): void {
     if (seconds < 0) this.clear();
     const count = liquids.reduce((sum, { columns: { count } }) => sum + count, 0);
     const radius = Math.max(...liquids.map((liquid) => liquid.radius)) / quantum;
-    const cells = new FrothCells(columns, count, radius);
+    const [center, before] = [columns.center.values, columns.before.values];
+    const cells = new FrothCells({ center, before }, count, radius);
+    const { values: to } = columns.froth;
     const fall = Math.sqrt(2 * kGravity * height);
     const scale = seconds > 0 ? quantum / seconds / fall : 0;
     const fading = Math.exp(-Math.max(seconds, 0) / (kFading * Math.sqrt((2 * height) / kGravity)));
@@ -49,12 +51,13 @@ export class Froth {
         const lone = 1 - step(kLone, neighbours);
         const spray = lone * step(kSpeed, scale * way);
         const turbulent = (1 - step(kSurface, neighbours)) * step(kTurbulence, scale * deviation);
-        const number = columns.number[i]!;
+        const number = columns.names.values[2 * i]!;
         const now = (foam[number] = Math.max(fading * foam[number]!, spray, turbulent));
-        to[4 * i] = Math.round(255 * now);
-        to[4 * i + 1] = Math.round(255 * lone);
+        to[2 * i] = Math.round(255 * now);
+        to[2 * i + 1] = Math.round(255 * lone);
       }
     }
+    columns.froth.changed();
   }
 
   clear(): void {

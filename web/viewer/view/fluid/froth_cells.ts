@@ -1,5 +1,3 @@
-import type { CopiedColumns } from '../particles/particle_columns';
-
 /** Width of a cell [particle radii]. 27 full cells contain about 90 particles. */
 const kWidth = 3;
 /** The maximum number of cells per particle, and of a liquid with few particles. */
@@ -18,6 +16,12 @@ export interface Neighbourhood {
   way: number;
 }
 
+/** Coordinates in the newest and the previous frame [quanta]. */
+interface Places {
+  center: Uint16Array;
+  before: Uint16Array;
+}
+
 type Sums = Record<'count' | 'x' | 'y' | 'z' | 'squares', Float32Array>;
 
 /** Numbers and ways of particles, summed over 27 cells. */
@@ -29,11 +33,11 @@ export class FrothCells {
 
   /** `radius` is that of the particles [quanta]. */
   constructor(
-    private readonly columns: Pick<CopiedColumns, 'center' | 'before'>,
+    private readonly places: Places,
     count: number,
     radius: number,
   ) {
-    const { low, sizes, width } = gridOf(columns.center, count, kWidth * radius);
+    const { low, sizes, width } = gridOf(places.center, count, kWidth * radius);
     const [first, second] = [sizes[0]!, sizes[0]! * sizes[1]!];
     const cells = second * sizes[2]!;
     const column = (): Float32Array => new Float32Array(cells);
@@ -41,7 +45,7 @@ export class FrothCells {
     this.cellOf = new Int32Array(count);
     for (let i = 0; i < count; ++i) {
       const at = (q: number): number =>
-        1 + Math.floor((columns.center[3 * i + q]! - low[q]!) / width);
+        1 + Math.floor((places.center[3 * i + q]! - low[q]!) / width);
       this.add(i, at(0) + first * at(1) + second * at(2));
     }
     for (const values of Object.values(this.sums)) {
@@ -78,7 +82,7 @@ export class FrothCells {
   }
 
   private wayOf(i: number): [number, number, number] {
-    const { center, before } = this.columns;
+    const { center, before } = this.places;
     const way = (at: number): number => center[at]! - before[at]!;
     return [way(3 * i), way(3 * i + 1), way(3 * i + 2)];
   }

@@ -1,5 +1,5 @@
 import { Color, Group, Mesh } from 'three';
-import type { BufferGeometry, ShaderMaterial } from 'three';
+import type { ShaderMaterial } from 'three';
 import { kLayers } from '../base/layers';
 import type { LiquidStyle } from '../base/liquid_style';
 import type { LookUniforms } from '../colour/look_uniforms';
@@ -23,7 +23,8 @@ export class LiquidDrawing {
   private hasFroth = false;
 
   constructor({ look, behind }: { look: LookUniforms; behind: BehindUniforms }) {
-    const uniforms = (this.uniforms = bodyUniforms(new Color(), look, true));
+    this.uniforms = bodyUniforms(new Color(), look, true);
+    const uniforms = { ...this.uniforms, ...this.joined.uniforms };
     this.add(splatDepthMaterial(uniforms, 1), 'splats', 'splats', 1);
     this.add(splatMaterial(uniforms, 1), 'splats', 'splats', 2);
     this.add(fluidDepthMaterial(uniforms, 1), 'fluid', 'fluidDepth');
@@ -48,7 +49,6 @@ export class LiquidDrawing {
     }
     if (drawn !== 'fluid' || this.hasFroth) return;
     this.froth.follow(liquids, joined, time);
-    joined.geometry.getAttribute('froth').needsUpdate = true;
     this.hasFroth = true;
   }
 
@@ -63,8 +63,8 @@ export class LiquidDrawing {
     layer: keyof typeof kLayers,
     order = 0,
   ): void {
-    const mesh = new Mesh(this.joined.geometry as BufferGeometry, material);
-    mesh.frustumCulled = false; // the geometry's bounds do not contain its instances
+    const mesh = new Mesh(this.joined.geometry, material);
+    mesh.frustumCulled = false; // the geometry has no bounds
     mesh.renderOrder = order;
     mesh.layers.set(kLayers[layer]);
     this.group.add(mesh);

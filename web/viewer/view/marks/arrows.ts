@@ -1,20 +1,21 @@
 import { Color, DoubleSide, Mesh, ShaderMaterial } from 'three';
 import type { BufferGeometry, IUniform } from 'three';
-import { kPlaceOfParticle } from '../particles/impostor';
-import type { BodyUniforms } from '../particles/impostor';
+import { placeOfParticle } from '../particles/impostor';
+import type { DrawnUniforms } from '../particles/impostor';
 import { kLayers } from '../base/layers';
 import type { ParticleColumns } from '../particles/particle_columns';
 
-/** Corners (across, along): the shaft from 0 to 1, the head from 2 (base) to 3 (tip). */
-const kCorners = [
-  [-1, 0, 1, 0, 1, 1, -1, 1],
-  [-1, 2, 1, 2, 0, 3],
-].flatMap((part) => part.flatMap((value, i) => (i % 2 === 0 ? [value] : [value, 0])));
-const kTriangles = [0, 1, 2, 0, 2, 3, 4, 5, 6];
+// prettier-ignore
+/** Vertices (across, along): the shaft from 0 to 1, the head from 2 (base) to 3 (tip). */
+const kVertices = [
+  [-1, 0], [1, 0], [1, 1], [-1, 0], [1, 1], [-1, 1],
+  [-1, 2], [1, 2], [0, 3],
+];
+const kCorners = kVertices.map(([across, along]) => `vec2(${across}, ${along})`).join();
 
 const kVertexShader = /* glsl */ `
-  ${kPlaceOfParticle}
-  in uint number;
+  ${placeOfParticle(kVertices.length)}
+  const vec2 kCorners[${kVertices.length}] = vec2[${kVertices.length}](${kCorners});
   uniform float interval;
   uniform float seconds;
   uniform float radius;
@@ -23,6 +24,8 @@ const kVertexShader = /* glsl */ `
 
   void main() {
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside of the picture
+    read_particle();
+    vec2 corner = kCorners[vertex];
     // A scattered selection, because rows of arrows would hide one another.
     if (((number * 2654435761u) >> 8) % every != 0u || interval <= 0.0) return;
     Body body = this_body();
@@ -40,10 +43,10 @@ const kVertexShader = /* glsl */ `
     vec3 across = normalize(cross(way, base));
     float head = min(0.45 * size, 1.3 * size_of_particle);
     float shaft = size - 0.9 * head;
-    float along = position.y < 1.5 ? shaft * position.y : size - head * (3.0 - position.y);
-    float width = position.y < 1.5 ? 0.16 : 0.62;
-    vec3 corner = base + along * way / size + width * head * position.x * across;
-    gl_Position = projectionMatrix * vec4(corner, 1.0);
+    float along = corner.y < 1.5 ? shaft * corner.y : size - head * (3.0 - corner.y);
+    float width = corner.y < 1.5 ? 0.16 : 0.62;
+    vec3 point = base + along * way / size + width * head * corner.x * across;
+    gl_Position = projectionMatrix * vec4(point, 1.0);
   }
 `;
 
@@ -71,7 +74,7 @@ export function arrowUniforms(): ArrowUniforms {
 /** Returns arrows along the velocities of particles, drawn over the scene. */
 export function arrowMesh(
   columns: ParticleColumns,
-  body: BodyUniforms,
+  body: DrawnUniforms,
   radius: number,
   isRigid: boolean,
   arrows: ArrowUniforms,
@@ -90,7 +93,7 @@ export function arrowMesh(
     depthTest: false,
     depthWrite: false,
   });
-  const mesh = new Mesh(columns.shapedAs(kCorners, kTriangles), material);
+  const mesh = new Mesh(columns.shapedAs(kVertices.length), material);
   mesh.frustumCulled = false;
   mesh.visible = false;
   mesh.renderOrder = 8;

@@ -84,9 +84,9 @@ export class Marks {
   }
 
   private mark(body: BodyView): void {
-    const { description, uniforms, columns, group } = body;
+    const { description, drawn, columns, group } = body;
     const { radius, local_positions: local } = description;
-    const arrows = arrowMesh(columns, uniforms, radius, local !== undefined, this.uniforms);
+    const arrows = arrowMesh(columns, drawn, radius, local !== undefined, this.uniforms);
     group.add(arrows);
     const size = local && 1.4 * Math.max(...local.map(Math.abs)) + 2 * radius;
     const axes = size === undefined ? undefined : new Axes(size);

@@ -1,9 +1,8 @@
 /**
- * The values of the body that a vertex belongs to, in GLSL. `row` is an attribute: 1, 2, … for the
- * rows of the table. It is 0 without the attribute, and the values are then those of the mesh.
+ * The values of the body that a vertex belongs to, in GLSL. It needs the number `row`: 1, 2, … for
+ * the rows of the table. If it is 0, the values are those of the mesh.
  */
 export const kBody = /* glsl */ `
-  in float row;
   uniform highp sampler2D body_table;
   uniform vec3 colour;
   uniform int colour_source;

@@ -2,6 +2,11 @@ import { Color, Vector3 } from 'three';
 import type { IUniform } from 'three';
 import type { LookUniforms } from '../colour/look_uniforms';
 import { kBody } from './body_shader';
+import { particleShader } from './texels';
+import type { ParticleUniforms } from './texels';
+
+/** Vertices of the square of a particle. */
+export const kSquareVertices = 6;
 
 /** Sources of the particles' colours. */
 export const kColourSource = {
@@ -26,6 +31,9 @@ export interface BodyUniforms extends LookUniforms {
   angular: IUniform<Vector3>;
 }
 
+/** The uniforms of a material that draws particles. */
+export type DrawnUniforms = BodyUniforms & ParticleUniforms;
+
 /** `moves`: whether particles move individually and are interpolated between frames. */
 export function bodyUniforms(colour: Color, look: LookUniforms, moves: boolean): BodyUniforms {
   return {
@@ -42,34 +50,40 @@ export function bodyUniforms(colour: Color, look: LookUniforms, moves: boolean):
   };
 }
 
-/** Position of the instance in world axes, and the test of the clip plane. */
-export const kPlaceOfParticle = /* glsl */ `
-  in vec3 center;
-  in vec3 before;
-  uniform float phase;
-  uniform vec4 clip_plane;
-  ${kBody}
+/**
+ * Position of the particle in coordinates of the model matrix (quanta, or body axes for rigid
+ * bodies), and the test of the clip plane.
+ */
+export function placeOfParticle(vertices: number): string {
+  return /* glsl */ `
+    ${particleShader(vertices)}
+    uniform float phase;
+    uniform vec4 clip_plane;
+    ${kBody}
 
-  vec3 place_of_particle() {
-    return mix(before, center, phase);
-  }
+    vec3 place_of_particle() {
+      return mix(before, center, phase);
+    }
 
-  bool is_clipped(vec3 world) {
-    return dot(clip_plane.xyz, world) > clip_plane.w;
+    bool is_clipped(vec3 world) {
+      return dot(clip_plane.xyz, world) > clip_plane.w;
+    }
+  `;
+}
+
+/** A square for each particle: two triangles. */
+export const kSquareOfParticle = /* glsl */ `
+  ${placeOfParticle(kSquareVertices)}
+  vec2 corner_of_square() {
+    // 0, 1, 2 and 0, 2, 3 of the corners in order
+    int corner = vertex < 3 ? vertex : vertex == 3 ? 0 : vertex - 2;
+    return vec2(corner == 1 || corner == 2 ? 1.0 : -1.0, corner > 1 ? 1.0 : -1.0);
   }
 `;
 
-/**
- * A square around each particle that faces the eye and covers the sphere's outline in perspective.
- * Instances contain the centre in coordinates of the model matrix: quanta, or body axes for rigid
- * bodies.
- */
+/** A square around each particle that faces the eye and covers the sphere's outline in perspective. */
 export const kImpostorVertexShader = /* glsl */ `
-  ${kPlaceOfParticle}
-  in uint number;
-  in int value;
-  /** Of a liquid: foam, and isolation from other particles, 0 to 1. */
-  in vec4 froth;
+  ${kSquareOfParticle}
   uniform float radius;
   uniform float value_quantum;
   uniform vec2 value_range;
@@ -96,6 +110,8 @@ export const kImpostorVertexShader = /* glsl */ `
   }
 
   void main() {
+    read_particle();
+    vec2 corner = corner_of_square();
     Body body = this_body();
     vec3 place = place_of_particle();
     vec3 world = (body.to_world * vec4(place, 1.0)).xyz;
@@ -114,7 +130,7 @@ export const kImpostorVertexShader = /* glsl */ `
     vec3 right = normalize(cross(vec3(0.0, 1.0, 0.0), toward));
     vec3 up = cross(toward, right);
     float outline = extent * sqrt(distance2 / max(distance2 - extent * extent, 0.01 * distance2));
-    view_point = view_center + outline * (position.x * right + position.y * up);
+    view_point = view_center + outline * (corner.x * right + corner.y * up);
     base = colour_at(body, mat3(body.to_world) * place);
     gl_Position = projectionMatrix * vec4(view_point, 1.0);
   }

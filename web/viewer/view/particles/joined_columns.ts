@@ -1,6 +1,7 @@
-import { Float32BufferAttribute, InstancedBufferAttribute, InstancedBufferGeometry } from 'three';
-import { kSquare, kSquareTriangles } from './particle_columns';
+import { BufferGeometry } from 'three';
+import { kSquareVertices } from './impostor';
 import type { CopiedColumns, ParticleColumns } from './particle_columns';
+import { Texels, particleUniforms } from './texels';
 
 const kGrowth = 1.5;
 
@@ -13,19 +14,24 @@ export interface GridBody {
   columns: ParticleColumns;
 }
 
-/** The graphics columns of several bodies, one after the other, as the instances of one geometry. */
+/** The textures of several bodies. */
+interface JoinedTexels extends CopiedColumns {
+  /** See Froth. */
+  froth: Texels<Uint8Array>;
+}
+
+/** The graphics columns of several bodies, one after the other, for one draw call. */
 export class JoinedColumns {
-  readonly geometry = new InstancedBufferGeometry();
-  /** Foam and isolation of each particle; see Froth. */
-  froth = new Uint8Array(0);
-  columns: CopiedColumns = columnsOf(0);
-  private rows = new Float32Array(0);
+  /** One square per particle. */
+  readonly geometry = new BufferGeometry();
+  readonly uniforms = particleUniforms();
+  columns!: JoinedTexels;
   private known = '';
+  private knownNames = '';
 
   constructor() {
-    this.geometry.setAttribute('position', new Float32BufferAttribute(kSquare, 3));
-    this.geometry.setIndex([...kSquareTriangles]);
-    this.geometry.instanceCount = 0;
+    this.geometry.setDrawRange(0, 0);
+    this.show(texelsFor(0));
   }
 
   /** Copies the columns of these bodies if they have changed. Returns whether they have. */
@@ -34,39 +40,53 @@ export class JoinedColumns {
     if (key === this.known) return false;
     this.known = key;
     const count = bodies.reduce((sum, { columns }) => sum + columns.count, 0);
-    if (count > this.rows.length || !this.geometry.hasAttribute('center')) this.reserve(count);
+    if (count > this.columns.center.room) this.reserve(count);
     let at = 0;
-    for (const { row, columns } of bodies) {
+    for (const { columns } of bodies) {
       columns.copyTo(this.columns, at);
-      this.rows.fill(row + 1, at, at + columns.count);
       at += columns.count;
     }
-    this.geometry.instanceCount = count;
-    for (const attribute of Object.values(this.geometry.attributes)) attribute.needsUpdate = true;
+    this.updateNames(bodies);
+    this.geometry.setDrawRange(0, kSquareVertices * count);
     return true;
   }
 
-  private reserve(count: number): void {
-    const room = Math.ceil(kGrowth * count);
-    this.geometry.dispose(); // releases the old buffers
-    this.columns = columnsOf(room);
-    this.rows = new Float32Array(room);
-    this.froth = new Uint8Array(4 * room);
-    const { center, before, number, value } = this.columns;
-    const attributes = { center, before, number, value, row: this.rows };
-    for (const [name, array] of Object.entries(attributes)) {
-      const size = array.length / room;
-      this.geometry.setAttribute(name, new InstancedBufferAttribute(array, size));
+  private updateNames(bodies: readonly GridBody[]): void {
+    const key = bodies
+      .map(({ body, row, columns }) => `${body} ${row} ${columns.versionOfNames}`)
+      .join();
+    if (key === this.knownNames) return;
+    this.knownNames = key;
+    let at = 0;
+    for (const { row, columns } of bodies) {
+      columns.copyNamesTo(this.columns.names, at, row + 1);
+      at += columns.count;
     }
-    this.geometry.setAttribute('froth', new InstancedBufferAttribute(this.froth, 4, true));
+  }
+
+  private reserve(count: number): void {
+    for (const texels of Object.values(this.columns) as { dispose(): void }[]) texels.dispose();
+    this.show(texelsFor(Math.ceil(kGrowth * count)));
+    this.knownNames = '';
+  }
+
+  private show(columns: JoinedTexels): void {
+    const { uniforms } = this;
+    this.columns = columns;
+    uniforms.center_texels.value = columns.center.texture;
+    uniforms.before_texels.value = columns.before.texture;
+    uniforms.name_texels.value = columns.names.texture;
+    uniforms.value_texels.value = columns.shown.texture;
+    uniforms.froth_texels.value = columns.froth.texture;
   }
 }
 
-function columnsOf(count: number): CopiedColumns {
+function texelsFor(count: number): JoinedTexels {
   return {
-    center: new Uint16Array(3 * count),
-    before: new Uint16Array(3 * count),
-    number: new Uint32Array(count),
-    value: new Int32Array(count),
+    center: Texels.places(count),
+    before: Texels.places(count),
+    names: Texels.names(count),
+    shown: Texels.shown(count),
+    froth: Texels.froth(count),
   };
 }

@@ -3,6 +3,7 @@ import type { BufferGeometry, ShaderMaterial } from 'three';
 import { kLayers } from '../base/layers';
 import type { LookUniforms } from '../colour/look_uniforms';
 import { bodyUniforms } from './impostor';
+import type { DrawnUniforms } from './impostor';
 import { JoinedColumns } from './joined_columns';
 import type { GridBody } from './joined_columns';
 import { shadowMaterial } from './shadow_material';
@@ -34,8 +35,8 @@ export class JoinedGrids {
   constructor(shared: { look: LookUniforms; floor: FloorUniforms }) {
     this.uniforms = bodyUniforms(new Color(), shared.look, true);
     this.meshes = {
-      spots: this.meshOf('spots', shadowMaterial(1, shared.floor, this.uniforms), 1),
-      spheres: this.meshOf('spheres', sphereMaterial(this.uniforms, 1), 2),
+      spots: this.meshOf('spots', shadowMaterial(1, shared.floor, this.drawn('spots')), 1),
+      spheres: this.meshOf('spheres', sphereMaterial(this.drawn('spheres'), 1), 2),
     };
     this.group.add(...kKinds.map((kind) => this.meshes[kind]));
   }
@@ -54,12 +55,16 @@ export class JoinedGrids {
     }
   }
 
+  private drawn(kind: Kind): DrawnUniforms {
+    return { ...this.uniforms, ...this.columns[kind].uniforms };
+  }
+
   private meshOf(
     kind: Kind,
     material: ShaderMaterial,
     order: number,
   ): Mesh<BufferGeometry, ShaderMaterial> {
-    const mesh = new Mesh(this.columns[kind].geometry as BufferGeometry, material);
+    const mesh = new Mesh(this.columns[kind].geometry, material);
     mesh.frustumCulled = false;
     mesh.renderOrder = order;
     mesh.visible = false;

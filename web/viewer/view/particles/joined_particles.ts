@@ -1,13 +1,14 @@
-import { Color, Float32BufferAttribute, Group, InstancedBufferAttribute, Mesh } from 'three';
-import { InstancedBufferGeometry } from 'three';
-import type { BufferGeometry, ShaderMaterial } from 'three';
+import { BufferGeometry, Color, Group, Mesh } from 'three';
+import type { ShaderMaterial } from 'three';
 import type { LookUniforms } from '../colour/look_uniforms';
 import { kLayers } from '../base/layers';
-import { bodyUniforms } from './impostor';
-import { kSquare, kSquareTriangles } from './particle_columns';
+import { bodyUniforms, kSquareVertices } from './impostor';
+import type { BodyUniforms, DrawnUniforms } from './impostor';
 import { shadowMaterial } from './shadow_material';
 import type { FloorUniforms } from './shadow_material';
 import { sphereMaterial } from './sphere_material';
+import { Texels, particleUniforms, texelsAt } from './texels';
+import type { ParticleUniforms } from './texels';
 
 /** The particles of a rigid body. */
 export interface RigidParticles {
@@ -29,10 +30,10 @@ export class JoinedParticles {
   private readonly joined: Record<Kind, Joined>;
 
   constructor(shared: { look: LookUniforms; floor: FloorUniforms }) {
-    const uniforms = bodyUniforms(new Color(), shared.look, false);
+    const body = bodyUniforms(new Color(), shared.look, false);
     this.joined = {
-      spots: new Joined(shadowMaterial(1, shared.floor, uniforms), 1),
-      spheres: new Joined(sphereMaterial(uniforms, 1), 2),
+      spots: new Joined(body, (uniforms) => shadowMaterial(1, shared.floor, uniforms), 1),
+      spheres: new Joined(body, (uniforms) => sphereMaterial(uniforms, 1), 2),
     };
     this.group.add(...kKinds.map((kind) => this.joined[kind].mesh));
   }
@@ -46,14 +47,19 @@ export class JoinedParticles {
   }
 }
 
-/** The particles of several bodies as instances of one mesh. */
+/** The particles of several bodies as one mesh. */
 class Joined {
   readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;
+  readonly uniforms: ParticleUniforms = particleUniforms();
   private known = '';
   private hidden: Mesh[] = [];
 
-  constructor(material: ShaderMaterial, order: number) {
-    this.mesh = new Mesh(new InstancedBufferGeometry() as BufferGeometry, material);
+  constructor(
+    body: BodyUniforms,
+    material: (uniforms: DrawnUniforms) => ShaderMaterial,
+    order: number,
+  ) {
+    this.mesh = new Mesh(new BufferGeometry(), material({ ...body, ...this.uniforms }));
     this.mesh.frustumCulled = false;
     this.mesh.renderOrder = order;
     this.mesh.visible = false;
@@ -67,33 +73,23 @@ class Joined {
     this.mesh.visible = bodies.length > 1;
     this.hidden = this.mesh.visible ? bodies.map(own) : [];
     for (const { layers } of this.hidden) layers.disableAll();
-    this.mesh.geometry.dispose();
-    if (this.mesh.visible) this.mesh.geometry = instancesOf(bodies);
+    if (this.mesh.visible) this.write(bodies);
   }
-}
 
-function instancesOf(bodies: readonly RigidParticles[]): InstancedBufferGeometry {
-  const count = bodies.reduce((sum, { places }) => sum + places.length / 3, 0);
-  const centres = new Float32Array(3 * count);
-  const numbers = new Uint32Array(count);
-  const rows = new Float32Array(count);
-  let at = 0;
-  for (const { places, row } of bodies) {
-    centres.set(places, 3 * at);
-    for (let i = 0; 3 * i < places.length; ++i, ++at) {
-      numbers[at] = i;
-      rows[at] = row + 1;
+  private write(bodies: readonly RigidParticles[]): void {
+    const count = bodies.reduce((sum, { places }) => sum + places.length / 3, 0);
+    const names = Texels.names(count);
+    let at = 0;
+    for (const { places, row } of bodies) {
+      for (let i = 0; 3 * i < places.length; ++i, ++at) names.values.set([i, row + 1], 2 * at);
     }
+    const { places, grid } = texelsAt(bodies.flatMap((body) => [...body.places]));
+    const { uniforms } = this;
+    uniforms.center_texels.value.dispose();
+    uniforms.name_texels.value.dispose();
+    uniforms.center_texels.value = uniforms.before_texels.value = places.texture; // rigid
+    uniforms.texel_grid.value = grid;
+    uniforms.name_texels.value = names.texture;
+    this.mesh.geometry.setDrawRange(0, kSquareVertices * count);
   }
-  const geometry = new InstancedBufferGeometry();
-  geometry.setAttribute('position', new Float32BufferAttribute(kSquare, 3));
-  geometry.setIndex([...kSquareTriangles]);
-  const centre = new InstancedBufferAttribute(centres, 3);
-  geometry.setAttribute('center', centre);
-  geometry.setAttribute('before', centre); // rigid
-  geometry.setAttribute('number', new InstancedBufferAttribute(numbers, 1));
-  geometry.setAttribute('value', new InstancedBufferAttribute(new Int32Array(count), 1));
-  geometry.setAttribute('row', new InstancedBufferAttribute(rows, 1));
-  geometry.instanceCount = count;
-  return geometry;
 }

@@ -1,18 +1,17 @@
-import { Float32BufferAttribute, InstancedBufferAttribute, InstancedBufferGeometry } from 'three';
+import { BufferGeometry } from 'three';
+import type { Vector4 } from 'three';
 import type { FrameHeader, GridBlock } from '../../../client/index';
+import { kSquareVertices } from './impostor';
+import { Texels, kNoValues, particleUniforms, texelsAt } from './texels';
 
 const kGrowth = 1.5;
 
-/** Corners and triangles of the square of a particle. */
-export const kSquare = [-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0];
-export const kSquareTriangles = [0, 1, 2, 0, 2, 3];
-
-/** The columns of several bodies; see ParticleColumns. */
+/** The textures of several bodies; see ParticleColumns. */
 export interface CopiedColumns {
-  center: Uint16Array;
-  before: Uint16Array;
-  number: Uint32Array;
-  value: Int32Array;
+  center: Texels<Uint16Array>;
+  before: Texels<Uint16Array>;
+  names: Texels<Uint32Array>;
+  shown: Texels<Int32Array>;
 }
 
 /** The grid of a frame. */
@@ -24,42 +23,43 @@ type Grid = Pick<FrameHeader, 'origin' | 'quantum'>;
  */
 export class ParticleColumns {
   /** One square per particle. */
-  readonly geometry: InstancedBufferGeometry;
-  private readonly geometries: InstancedBufferGeometry[] = [];
+  readonly geometry: BufferGeometry;
+  readonly uniforms = particleUniforms();
+  private readonly geometries: { geometry: BufferGeometry; vertices: number }[] = [];
   private places: [Places, Places];
   private newest = 0;
   private numbers: Uint32Array | undefined;
-  private numberColumn: InstancedBufferAttribute;
-  private valueColumn: InstancedBufferAttribute;
+  private names: Texels<Uint32Array>;
+  private shown: Texels<Int32Array> | undefined;
+  private particles: number;
   private grid: Grid | undefined;
   private changes = 0;
+  private changesOfNames = 0;
 
   constructor(particles: number, local?: readonly number[]) {
     if (local) {
-      const fixed = new Places(new Float32Array(local));
+      const fixed = new FixedPlaces(local, this.uniforms.texel_grid.value);
       this.places = [fixed, fixed];
     } else {
-      this.places = [newPlaces(particles), newPlaces(particles)];
+      this.places = [new MovingPlaces(particles), new MovingPlaces(particles)];
     }
-    this.numberColumn = plainNumbers(particles);
-    this.valueColumn = new InstancedBufferAttribute(new Int32Array(particles), 1);
-    this.geometry = this.shapedAs(kSquare, kSquareTriangles);
-    this.count = particles;
+    this.names = plainNames(particles);
+    this.particles = particles;
+    this.geometry = this.shapedAs(kSquareVertices);
+    this.attach();
   }
 
-  /** Returns instances of a shape with these corners and triangles. */
-  shapedAs(corners: number[], triangles: number[]): InstancedBufferGeometry {
-    const geometry = new InstancedBufferGeometry();
-    geometry.setAttribute('position', new Float32BufferAttribute(corners, 3));
-    geometry.setIndex(triangles);
-    geometry.instanceCount = this.geometries[0]?.instanceCount ?? 0;
-    this.geometries.push(geometry);
-    this.attach();
+  /** Returns a geometry with this number of vertices for each particle. */
+  shapedAs(vertices: number): BufferGeometry {
+    const geometry = new BufferGeometry();
+    geometry.setDrawRange(0, vertices * this.particles);
+    this.geometries.push({ geometry, vertices });
     return geometry;
   }
 
   dispose(): void {
-    for (const geometry of this.geometries) geometry.dispose();
+    for (const { geometry } of this.geometries) geometry.dispose();
+    this.disposeTexels();
   }
 
   /** Increases with each change of the columns. */
@@ -67,28 +67,41 @@ export class ParticleColumns {
     return this.changes;
   }
 
-  /** Copies the columns to those of several bodies, from particle `at` on. */
+  /** Increases with each change of the particle numbers. */
+  get versionOfNames(): number {
+    return this.changesOfNames;
+  }
+
+  /** Copies positions and values to those of several bodies, from particle `at` on. */
   copyTo(to: CopiedColumns, at: number): void {
     const { count } = this;
-    to.center.set(this.places[this.newest]!.array.subarray(0, 3 * count), 3 * at);
-    to.before.set(this.places[1 - this.newest]!.array.subarray(0, 3 * count), 3 * at);
-    to.number.set((this.numberColumn.array as Uint32Array).subarray(0, count), at);
-    to.value.set((this.valueColumn.array as Int32Array).subarray(0, count), at);
+    to.center.set(this.places[this.newest]!.texels.values.subarray(0, 3 * count), at);
+    to.before.set(this.places[1 - this.newest]!.texels.values.subarray(0, 3 * count), at);
+    if (this.shown) to.shown.set(this.shown.values.subarray(0, count), at);
+  }
+
+  /** Writes the particle numbers and a row to those of several bodies, from particle `at` on. */
+  copyNamesTo({ values, texture }: Texels<Uint32Array>, at: number, row: number): void {
+    for (let i = 0; i < this.particles; ++i) {
+      values[2 * (at + i)] = this.numberAt(i);
+      values[2 * (at + i) + 1] = row;
+    }
+    texture.needsUpdate = true;
   }
 
   /** The present number of particles, which can change for a liquid. */
   get count(): number {
-    return this.geometry.instanceCount;
+    return this.particles;
   }
 
   private set count(count: number) {
-    for (const geometry of this.geometries) geometry.instanceCount = count;
+    if (count !== this.particles) ++this.changesOfNames;
+    this.particles = count;
+    for (const { geometry, vertices } of this.geometries)
+      geometry.setDrawRange(0, vertices * count);
   }
 
-  /**
-   * Shows the positions of a block. If the number of particles is unchanged, they are not copied:
-   * positions and numbers must not change until the second next call.
-   */
+  /** Shows the positions of a block. Its numbers must not change until the second next call. */
   show(block: GridBlock, grid: Grid): void {
     const count = block.positions.length / 3;
     if (count > this.room) this.grow(count);
@@ -114,8 +127,9 @@ export class ParticleColumns {
 
   /** Shows values for the particles of the last block. */
   showValues(values: Int32Array): void {
-    (this.valueColumn.array as Int32Array).set(values);
-    this.valueColumn.needsUpdate = true;
+    this.shown ??= Texels.shown(this.names.room);
+    this.shown.set(values);
+    this.attach();
     ++this.changes;
   }
 
@@ -155,7 +169,7 @@ export class ParticleColumns {
   }
 
   private get room(): number {
-    return this.numberColumn.count;
+    return this.names.room;
   }
 
   /** Returns whether the previous frame has the same particles and grid. */
@@ -166,7 +180,7 @@ export class ParticleColumns {
   }
 
   /** Returns the previous positions on the new grid. New particles keep their positions. */
-  private carriedOver(block: GridBlock, old: Column, grid: Grid): Uint16Array {
+  private carriedOver(block: GridBlock, old: Places['array'], grid: Grid): Uint16Array {
     const carried = block.positions.slice();
     const from = this.grid!;
     const scale = from.quantum / grid.quantum;
@@ -184,78 +198,93 @@ export class ParticleColumns {
     return carried;
   }
 
-  /** Replaces the buffers by larger ones with reserve, because graphics buffers have a fixed length. */
+  /** Replaces the textures by larger ones with reserve, because they have a fixed size. */
   private grow(count: number): void {
     const room = Math.ceil(kGrowth * count);
-    this.dispose(); // releases the old buffers
     const old = this.places[this.newest]!.array;
-    this.places = [newPlaces(room), newPlaces(room)];
+    this.disposeTexels();
+    this.places = [new MovingPlaces(room), new MovingPlaces(room)];
     this.places[this.newest]!.set(old as Uint16Array);
-    this.numberColumn = plainNumbers(room);
-    this.valueColumn = new InstancedBufferAttribute(new Int32Array(room), 1);
+    this.names = plainNames(room);
+    this.shown = undefined;
+  }
+
+  private disposeTexels(): void {
+    for (const { texels } of this.places) texels.dispose();
+    this.names.dispose();
+    this.shown?.dispose();
   }
 
   private attach(): void {
-    for (const geometry of this.geometries) {
-      geometry.setAttribute('center', this.places[this.newest]!.attribute);
-      geometry.setAttribute('before', this.places[1 - this.newest]!.attribute);
-      geometry.setAttribute('number', this.numberColumn);
-      geometry.setAttribute('value', this.valueColumn);
-    }
+    const { uniforms } = this;
+    uniforms.center_texels.value = this.places[this.newest]!.texels.texture;
+    uniforms.before_texels.value = this.places[1 - this.newest]!.texels.texture;
+    uniforms.name_texels.value = this.names.texture;
+    uniforms.value_texels.value = this.shown?.texture ?? kNoValues;
   }
 
   /** Uploads the numbers if they have changed. */
   private showNumbers(): void {
-    const { numbers, count } = this;
-    const shown = this.numberColumn.array as Uint32Array;
+    const { numbers, count, names } = this;
+    let isChanged = false;
     for (let i = 0; i < count; ++i) {
       const number = numbers ? numbers[i]! : i;
-      if (shown[i] === number) continue;
-      shown[i] = number;
-      this.numberColumn.needsUpdate = true;
+      if (names.values[2 * i] === number) continue;
+      names.values[2 * i] = number;
+      isChanged = true;
     }
+    if (!isChanged) return;
+    names.changed();
+    ++this.changesOfNames;
   }
 }
 
-type Column = Uint16Array | Float32Array;
+/** A column of coordinates, and its texture. */
+interface Places {
+  readonly array: Uint16Array | Float32Array;
+  readonly texels: Texels<Uint16Array>;
+  set(positions: Uint16Array): void;
+}
 
-/** A column of coordinates with a graphics buffer of fixed length. */
-class Places {
-  readonly attribute: InstancedBufferAttribute;
-  private readonly room: number;
-  /** A copy for positions that do not fill the buffer. */
-  private copies: Uint16Array | undefined;
+class MovingPlaces implements Places {
+  readonly texels: Texels<Uint16Array>;
 
-  constructor(array: Column) {
-    this.room = array.length;
-    this.attribute = new InstancedBufferAttribute(array, 3);
+  constructor(particles: number) {
+    this.texels = Texels.places(particles);
   }
 
-  get array(): Column {
-    return this.attribute.array as Column;
+  get array(): Uint16Array {
+    return this.texels.values;
   }
 
   set(positions: Uint16Array): void {
-    if (positions.length === this.room) this.attribute.array = positions;
-    else {
-      this.copies ??= new Uint16Array(this.room);
-      this.copies.set(positions);
-      this.attribute.array = this.copies;
-    }
-    this.attribute.needsUpdate = true;
+    this.texels.set(positions);
   }
 }
 
-function newPlaces(particles: number): Places {
-  return new Places(new Uint16Array(3 * particles));
+/** Positions in a rigid body. */
+class FixedPlaces implements Places {
+  readonly array: Float32Array;
+  readonly texels: Texels<Uint16Array>;
+
+  /** Writes the grid of the texture. */
+  constructor(local: readonly number[], grid: Vector4) {
+    this.array = new Float32Array(local);
+    const at = texelsAt(local);
+    this.texels = at.places;
+    grid.copy(at.grid);
+  }
+
+  set(): void {
+    throw new Error('the positions are those of a rigid body');
+  }
 }
 
 /** Returns the numbers 0, 1, 2, ... */
-function plainNumbers(count: number): InstancedBufferAttribute {
-  return new InstancedBufferAttribute(
-    new Uint32Array(count).map((_, i) => i),
-    1,
-  );
+function plainNames(count: number): Texels<Uint32Array> {
+  const names = Texels.names(count);
+  for (let i = 0; i < names.room; ++i) names.values[2 * i] = i;
+  return names;
 }
 
 function isSameGrid(a: Grid, b: Grid): boolean {

@@ -1,6 +1,6 @@
 import { Color, CustomBlending, MinEquation, OneFactor, ShaderMaterial, Vector4 } from 'three';
-import { kPlaceOfParticle } from './impostor';
-import type { BodyUniforms } from './impostor';
+import { kSquareOfParticle } from './impostor';
+import type { DrawnUniforms } from './impostor';
 
 /** The uniforms of the floor with shadows; one object for all bodies. */
 export interface FloorUniforms {
@@ -27,7 +27,7 @@ export function floorUniforms(): FloorUniforms {
 }
 
 const kVertexShader = /* glsl */ `
-  ${kPlaceOfParticle}
+  ${kSquareOfParticle}
   uniform float radius;
   uniform float floor_z;
   uniform float reach;
@@ -36,10 +36,11 @@ const kVertexShader = /* glsl */ `
   out vec2 at;
 
   void main() {
+    read_particle();
     vec3 world = (this_body().to_world * vec4(place_of_particle(), 1.0)).xyz;
     strength = clamp(1.0 - (world.z - floor_z) / reach, 0.0, 1.0);
-    spot = position.xy;
-    at = world.xy + 2.2 * radius_of_body(radius) * position.xy;
+    spot = corner_of_square();
+    at = world.xy + 2.2 * radius_of_body(radius) * spot;
     gl_Position = is_clipped(world)
       ? vec4(2.0, 2.0, 2.0, 1.0) // outside of the picture
       : projectionMatrix * viewMatrix * vec4(at, floor_z, 1.0);
@@ -69,7 +70,7 @@ const kFragmentShader = /* glsl */ `
 export function shadowMaterial(
   radius: number,
   floor: FloorUniforms,
-  body: BodyUniforms,
+  body: DrawnUniforms,
 ): ShaderMaterial {
   return new ShaderMaterial({
     vertexShader: kVertexShader,

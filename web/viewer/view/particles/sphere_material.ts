@@ -1,6 +1,6 @@
 import { ShaderMaterial } from 'three';
 import { kImpostorHit, kImpostorVertexShader } from './impostor';
-import type { BodyUniforms } from './impostor';
+import type { DrawnUniforms } from './impostor';
 import { kSun } from '../base/light';
 
 const kShade = /* glsl */ `
@@ -26,7 +26,7 @@ const kShade = /* glsl */ `
 `;
 
 /** Shaded spheres of this radius [m]. */
-export function sphereMaterial(body: BodyUniforms, radius: number): ShaderMaterial {
+export function sphereMaterial(body: DrawnUniforms, radius: number): ShaderMaterial {
   return new ShaderMaterial({
     vertexShader: kImpostorVertexShader,
     fragmentShader: `${kImpostorHit}${kShade}`,

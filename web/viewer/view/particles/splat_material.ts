@@ -1,6 +1,6 @@
 import { AddEquation, CustomBlending, GLSL3, OneFactor, ShaderMaterial } from 'three';
 import { kImpostorHit, kImpostorVertexShader } from './impostor';
-import type { BodyUniforms } from './impostor';
+import type { DrawnUniforms } from './impostor';
 
 /** Depth below the nearest splat within which others count, relative to the splat radius. */
 const kLayer = 0.6;
@@ -33,7 +33,7 @@ const kOutputs = /* glsl */ `
 /** Splat radius / particle radius. Splats overlap and form a closed surface. */
 const kSize = 2;
 
-function splatShader(uniforms: BodyUniforms, radius: number, shade: string): ShaderMaterial {
+function splatShader(uniforms: DrawnUniforms, radius: number, shade: string): ShaderMaterial {
   return new ShaderMaterial({
     glslVersion: GLSL3,
     vertexShader: kImpostorVertexShader,
@@ -43,14 +43,14 @@ function splatShader(uniforms: BodyUniforms, radius: number, shade: string): Sha
 }
 
 /** Writes depths only, slightly below the surface of the splats. */
-export function splatDepthMaterial(body: BodyUniforms, radius: number): ShaderMaterial {
+export function splatDepthMaterial(body: DrawnUniforms, radius: number): ShaderMaterial {
   const material = splatShader(body, radius, kDepth);
   material.colorWrite = false;
   return material;
 }
 
 /** Sums the weighted properties of the surface. LiquidPass divides by the weights. */
-export function splatMaterial(body: BodyUniforms, radius: number): ShaderMaterial {
+export function splatMaterial(body: DrawnUniforms, radius: number): ShaderMaterial {
   const material = splatShader(body, radius, kSplat);
   material.depthWrite = false;
   material.blending = CustomBlending;

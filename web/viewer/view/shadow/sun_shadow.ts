@@ -34,6 +34,7 @@ const kAbove = 0.5;
 const kVertexShader = /* glsl */ `
   in vec3 before;
   uniform float phase;
+  in float row;
   ${kBody}
   void main() {
     vec4 world = this_body().to_world * vec4(mix(before, position, phase), 1.0);

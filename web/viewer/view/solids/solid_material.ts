@@ -15,6 +15,7 @@ const kVertexShader = /* glsl */ `
   uniform float phase;
   uniform vec2 value_range;
   uniform sampler2D value_map;
+  in float row;
   ${kBody}
   out vec3 world_point;
   out vec3 outward;
