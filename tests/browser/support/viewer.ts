@@ -141,6 +141,8 @@ export class Viewer {
     );
     for (let last = ''; ;) {
       const picture = await this.picture();
+      // A picture that waits for shaders is not drawn, and the previous one remains.
+      await this.until('#view[data-warm="true"]');
       if (picture === last) return picture;
       last = picture;
     }

@@ -290,7 +290,9 @@ export class Stage {
     // A picture that does not change is drawn once more in full resolution.
     const isLast = !stale && this.scale < 1 && at - this.drawnAt > kStillMs;
     if (!stale && !isLast) return;
-    if (!this.warmUp.advance(this.camera, (mesh) => this.targetOf(mesh))) return;
+    const isWarm = this.warmUp.advance(this.camera, (mesh) => this.targetOf(mesh));
+    if (this.canvas.dataset.warm !== String(isWarm)) this.canvas.dataset.warm = String(isWarm);
+    if (!isWarm) return;
     if (isLast) this.setScale(1);
     else if (drewLast) this.setScale(this.resolution.scale);
     this.stale = false;
