@@ -2,11 +2,13 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <vector>
 
 #include "protocol/frame/frame_codec.h"
 #include "tests/bench/fanout/frame_facts.h"
 #include "tests/bench/fanout/segments.h"
 #include "tests/bench/faults/log_causes.h"
+#include "tests/bench/report/quantile.h"
 #include "tests/bench/soak/trend.h"
 #include "tests/cli/program.h"
 #include "tests/cli/readers.h"
@@ -33,6 +35,16 @@ TEST(BenchFanout, ReadsTheHeader) {
   EXPECT_TRUE(facts.is_key);
   EXPECT_EQ(facts.published, 1.7e9 + 0.25);
   EXPECT_THROW(bench::frame_facts("VATF"), std::runtime_error);
+}
+
+TEST(BenchReport, AQuantileIsTheValueOfTheNearestRank) {
+  const std::vector<double> values{50, 10, 40, 20, 30};
+  EXPECT_EQ(bench::quantile(values, 0), 10);
+  EXPECT_EQ(bench::quantile(values, 0.37), 20);
+  EXPECT_EQ(bench::quantile(values, 0.38), 30);
+  EXPECT_EQ(bench::quantile(values, 1), 50);
+  EXPECT_EQ(bench::median(std::vector<double>{4, 1}), 4);
+  EXPECT_TRUE(std::isnan(bench::median(std::vector<double>{})));
 }
 
 // If all segments are equal, every bootstrap sample gives the same ratio. A different segment is

@@ -1,9 +1,11 @@
 #include "tests/bench/accuracy/catalogue_report.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/support/check.h"
 #include "tests/bench/accuracy/problem.h"
+#include "tests/bench/report/quantile.h"
 
 namespace vat::bench {
 
@@ -55,9 +57,7 @@ double median_speed(const Scene& scene, const CatalogueSettings& settings, TaskR
     run.advance_to(settings.timed);
     speeds.push_back(settings.timed / run.seconds());
   }
-  const auto middle = speeds.begin() + settings.repetitions / 2;
-  std::ranges::nth_element(speeds, middle);
-  return *middle;
+  return median(std::move(speeds));
 }
 
 CatalogueResult measure(const std::string& name, const CatalogueSettings& settings,

@@ -1,8 +1,7 @@
 #include "tests/bench/accuracy/growth_report.h"
 
-#include <algorithm>
-
 #include "core/support/check.h"
+#include "tests/bench/report/quantile.h"
 
 namespace vat::bench {
 
@@ -17,8 +16,7 @@ std::vector<GrowthResult> sweep_growth(Index steps, int repetitions) {
         result.point = stability::measure_growth(family, size, steps);
         seconds.push_back(result.point.seconds);
       }
-      std::ranges::nth_element(seconds, seconds.begin() + repetitions / 2);
-      result.point.seconds = seconds[static_cast<std::size_t>(repetitions) / 2];
+      result.point.seconds = median(std::move(seconds));
       results.push_back(result);
     }
   }

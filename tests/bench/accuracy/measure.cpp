@@ -5,8 +5,10 @@
 #include <limits>
 #include <ranges>
 #include <stdexcept>
+#include <utility>
 
 #include "core/limits.h"
+#include "tests/bench/report/quantile.h"
 #include "tests/validation/order.h"
 
 namespace vat::bench {
@@ -58,12 +60,6 @@ double run_once(const Problem& problem, const Scene& scene, TaskRunner* runner,
   return run.seconds();
 }
 
-double median_time(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 void time_runs(const Problem& problem, const Scene& scene, const SweepSettings& settings,
                TaskRunner* runner, Solution& solution) {
   std::vector<double> seconds;
@@ -76,7 +72,7 @@ void time_runs(const Problem& problem, const Scene& scene, const SweepSettings& 
     if (solution.state_hash == hash) continue;
     throw std::logic_error(problem.title + ": two equal runs end in different states");
   }
-  solution.seconds = seconds.empty() ? first : median_time(std::move(seconds));
+  solution.seconds = seconds.empty() ? first : median(std::move(seconds));
 }
 
 Solution solve(const Problem& problem, const Scene& scene, const SweepSettings& settings,

@@ -1,7 +1,9 @@
 #include "tests/bench/accuracy/solver_report.h"
 
 #include <algorithm>
+#include <utility>
 
+#include "tests/bench/report/quantile.h"
 #include "tests/validation/cases/liquid/liquid_solvers.h"
 
 namespace vat::bench {
@@ -22,8 +24,7 @@ SolverResult median_of(int repetitions, Solve&& solve) {
     result = solve();
     seconds.push_back(result.seconds);
   }
-  std::ranges::sort(seconds);
-  result.seconds = seconds[seconds.size() / 2];
+  result.seconds = median(std::move(seconds));
   return result;
 }
 

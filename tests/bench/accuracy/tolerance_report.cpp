@@ -1,8 +1,7 @@
 #include "tests/bench/accuracy/tolerance_report.h"
 
-#include <algorithm>
-
 #include "core/support/check.h"
+#include "tests/bench/report/quantile.h"
 
 namespace vat::bench {
 
@@ -19,9 +18,7 @@ TolerancePoint measure_median(const char* scene, Real tolerance, Real seconds, i
     point = stability::measure_tolerance(scene, tolerance, seconds);
     times.push_back(point.seconds);
   }
-  const auto middle = times.begin() + repetitions / 2;
-  std::ranges::nth_element(times, middle);
-  point.seconds = *middle;
+  point.seconds = median(std::move(times));
   return point;
 }
 

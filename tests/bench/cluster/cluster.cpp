@@ -1,6 +1,5 @@
 #include "tests/bench/cluster/cluster.h"
 
-#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <filesystem>
@@ -15,6 +14,7 @@
 #include "tests/bench/cluster/cluster_nodes.h"
 #include "tests/bench/cluster/cluster_viewer.h"
 #include "tests/bench/cluster/following_viewers.h"
+#include "tests/bench/report/quantile.h"
 #include "tests/bench/report/table.h"
 #include "tests/bench/speed/machine.h"
 
@@ -40,13 +40,6 @@ constexpr std::chrono::seconds kPlayTime{1};
 
 double seconds_between(steady_clock::time_point begin, steady_clock::time_point end) {
   return ClusterSeconds(end - begin).count();
-}
-
-double quantile_of(std::vector<double> times, double part) {
-  if (times.empty()) return kAbsent;
-  std::ranges::sort(times);
-  const auto index = static_cast<std::size_t>(part * static_cast<double>(times.size() - 1) + 0.5);
-  return times[index];
 }
 
 /// Stops and starts each node while viewers watch. Returns the longest pause of each viewer [s].
@@ -93,20 +86,18 @@ int measure_cluster(const ClusterOptions& options) {
     nodes.start(node);
   }
   const std::vector<double> pauses = restart_all(nodes, options.viewers);
-  const bool passed = quantile_of(kills, 0.5) <= kMaxMedianFailOver &&
-                      quantile_of(kills, 0.95) <= kMaxFailOver &&
-                      quantile_of(moves, 1) <= kMaxHandOver;
+  const bool passed = quantile(kills, 0.5) <= kMaxMedianFailOver &&
+                      quantile(kills, 0.95) <= kMaxFailOver && quantile(moves, 1) <= kMaxHandOver;
   const Machine machine = this_machine();
-  const Table table{
-      {"scene", "kills", "commands", "median fail-over [s]", "95 % fail-over [s]", "hand-overs",
-       "median hand-over [s]", "longest hand-over [s]", "viewers of the rolling restart",
-       "median of their longest pauses [s]", "longest pause [s]", "passed", "commit", "cpu",
-       "cores"},
-      {{options.scene, std::uint64_t{kills.size()}, std::uint64_t{viewer.commands()},
-        quantile_of(kills, 0.5), quantile_of(kills, 0.95), std::uint64_t{moves.size()},
-        quantile_of(moves, 0.5), quantile_of(moves, 1), std::uint64_t{options.viewers},
-        quantile_of(pauses, 0.5), quantile_of(pauses, 1), passed, machine.commit, machine.cpu,
-        std::uint64_t{machine.cores}}}};
+  const Table table{{"scene", "kills", "commands", "median fail-over [s]", "95 % fail-over [s]",
+                     "hand-overs", "median hand-over [s]", "longest hand-over [s]",
+                     "viewers of the rolling restart", "median of their longest pauses [s]",
+                     "longest pause [s]", "passed", "commit", "cpu", "cores"},
+                    {{options.scene, std::uint64_t{kills.size()}, std::uint64_t{viewer.commands()},
+                      quantile(kills, 0.5), quantile(kills, 0.95), std::uint64_t{moves.size()},
+                      quantile(moves, 0.5), quantile(moves, 1), std::uint64_t{options.viewers},
+                      quantile(pauses, 0.5), quantile(pauses, 1), passed, machine.commit,
+                      machine.cpu, std::uint64_t{machine.cores}}}};
   std::cout << to_markdown(table);
   if (const Status status = write_table(table, options.output, "cluster", "# Cluster"); !status) {
     return fail(options.output, status.errors());

@@ -2,9 +2,9 @@
 
 #include <cmath>
 #include <iostream>
-#include <limits>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "server/cli/common/command.h"
@@ -12,6 +12,7 @@
 #include "tests/bench/codec/measure.h"
 #include "tests/bench/codec/peers.h"
 #include "tests/bench/options.h"
+#include "tests/bench/report/quantile.h"
 #include "tests/bench/report/table.h"
 #include "tests/bench/speed/machine.h"
 #include "tests/bench/speed/targets.h"

@@ -5,9 +5,11 @@
 #include <deque>
 #include <random>
 #include <stdexcept>
+#include <utility>
 
 #include "protocol/frame/frame_domain.h"
 #include "tests/bench/codec/stream.h"
+#include "tests/bench/report/quantile.h"
 
 namespace vat::bench {
 namespace {
@@ -73,18 +75,6 @@ std::size_t shown(const GridFrame& frame) {
 }
 
 }  // namespace
-
-Real quantile(std::vector<Real> values, Real part) {
-  if (values.empty()) return 0;
-  const auto at = static_cast<std::size_t>(part * static_cast<Real>(values.size()));
-  const auto there = values.begin() + static_cast<std::ptrdiff_t>(std::min(at, values.size() - 1));
-  std::ranges::nth_element(values, there);
-  return *there;
-}
-
-Real median(std::vector<Real> values) {
-  return quantile(std::move(values), 0.5);
-}
 
 std::vector<GridFrame> on_grids(const Recording& recording, Real max_error) {
   FrameDomain domain;

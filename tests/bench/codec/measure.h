@@ -37,8 +37,4 @@ std::vector<GridFrame> on_grids(const Recording& recording, Real max_error);
 CodecResult measure_codec(const Recording& recording, const std::vector<GridFrame>& frames,
                           const CodecSetting& setting);
 
-/// Returns the value below which the fraction `part` of the values lies; 0 if there are none.
-Real quantile(std::vector<Real> values, Real part);
-Real median(std::vector<Real> values);
-
 }  // namespace vat::bench

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "tests/bench/codec/measure.h"
+#include "tests/bench/report/quantile.h"
 
 #ifdef VAT_HAS_ZSTD
 #include <zstd.h>

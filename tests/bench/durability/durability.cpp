@@ -1,6 +1,5 @@
 #include "tests/bench/durability/durability.h"
 
-#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <filesystem>
@@ -13,6 +12,7 @@
 
 #include "server/cli/common/command.h"
 #include "tests/bench/fanout/served.h"
+#include "tests/bench/report/quantile.h"
 #include "tests/bench/report/table.h"
 #include "tests/bench/soak/caller.h"
 #include "tests/bench/speed/machine.h"
@@ -64,14 +64,6 @@ struct DurabilityFigures {
   std::vector<double> replies;   // [s]
   std::vector<double> lateness;  // of ticks [s]
 };
-
-double quantile(std::vector<double>& values, double part) {
-  if (values.empty()) throw std::runtime_error("nothing was measured");
-  const auto at =
-      values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
-  std::ranges::nth_element(values, at);
-  return *at;
-}
 
 class DurabilityRun {
  public:
@@ -159,7 +151,10 @@ Table measure_durability(const DurabilityOptions& options) {
               {}};
   for (const std::size_t sessions : options.sessions) {
     for (const char* mode : {kNoJournal, "process", "power"}) {
-      DurabilityFigures figures = DurabilityRun(options, mode, sessions).measure();
+      const DurabilityFigures figures = DurabilityRun(options, mode, sessions).measure();
+      if (figures.replies.empty() || figures.lateness.empty()) {
+        throw std::runtime_error("nothing was measured");
+      }
       table.rows.push_back(
           {std::uint64_t{sessions}, mode, std::uint64_t{figures.replies.size()},
            1e3 * quantile(figures.replies, 0.5), 1e3 * quantile(figures.replies, 0.99),

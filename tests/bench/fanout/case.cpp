@@ -6,8 +6,10 @@
 #include <memory>
 #include <numeric>
 #include <thread>
+#include <utility>
 
 #include "tests/bench/fanout/served.h"
+#include "tests/bench/report/quantile.h"
 
 namespace vat::bench {
 namespace {
@@ -27,13 +29,6 @@ std::size_t count_all(const ViewerCounts& viewers) {
 
 bool is_silent(const FanoutCase& one) {
   return one.viewers[static_cast<std::size_t>(ViewerKind::silent)] > 0;
-}
-
-double quantile(std::vector<float> values, double share) {
-  if (values.empty()) return FanoutResult::kAbsent;
-  const auto rank = static_cast<long>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + rank, values.end());
-  return values[static_cast<std::size_t>(rank)];
 }
 
 std::vector<std::string> server_arguments(const FanoutCase& one, const FanoutSettings& settings) {

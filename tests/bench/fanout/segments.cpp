@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <limits>
 #include <random>
+#include <utility>
+
+#include "tests/bench/report/quantile.h"
 
 namespace vat::bench {
 namespace {
@@ -11,13 +14,6 @@ constexpr int kDraws = 2000;
 constexpr double kOutside = 0.025;  // excluded on either side of the interval
 constexpr std::size_t kMinSegments = 5;
 
-double segment_quantile(std::vector<float>& values, double share) {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto rank = static_cast<long>(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + rank, values.end());
-  return values[static_cast<std::size_t>(rank)];
-}
-
 double drawn_quantile(const Segments& segments, double share, std::mt19937& random) {
   std::uniform_int_distribution<std::size_t> draw(0, segments.size() - 1);
   std::vector<float> values;
@@ -25,7 +21,7 @@ double drawn_quantile(const Segments& segments, double share, std::mt19937& rand
     const std::vector<float>& segment = segments[draw(random)];
     values.insert(values.end(), segment.begin(), segment.end());
   }
-  return segment_quantile(values, share);
+  return quantile(std::move(values), share);
 }
 
 }  // namespace
@@ -33,7 +29,7 @@ double drawn_quantile(const Segments& segments, double share, std::mt19937& rand
 double pooled_quantile(const Segments& segments, double share) {
   std::vector<float> values;
   for (const auto& segment : segments) values.insert(values.end(), segment.begin(), segment.end());
-  return segment_quantile(values, share);
+  return quantile(std::move(values), share);
 }
 
 QuantileRatio quantile_ratio(const Segments& a, const Segments& b, double share) {
@@ -47,8 +43,8 @@ QuantileRatio quantile_ratio(const Segments& a, const Segments& b, double share)
     const double of_a = drawn_quantile(a, share, random);
     draws.push_back(static_cast<float>(drawn_quantile(b, share, random) / of_a));
   }
-  ratio.low = segment_quantile(draws, kOutside);
-  ratio.high = segment_quantile(draws, 1 - kOutside);
+  ratio.low = quantile(draws, kOutside);
+  ratio.high = quantile(draws, 1 - kOutside);
   return ratio;
 }
 

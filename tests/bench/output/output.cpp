@@ -1,6 +1,5 @@
 #include "tests/bench/output/output.h"
 
-#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <exception>
@@ -16,6 +15,7 @@
 #include "server/cli/common/command.h"
 #include "server/output/frame_writer.h"
 #include "tests/bench/options.h"
+#include "tests/bench/report/quantile.h"
 #include "tests/bench/report/table.h"
 #include "tests/bench/speed/machine.h"
 #include "tests/bench/speed/scenes.h"
@@ -64,11 +64,6 @@ double bytes_in(const fs::path& folder) {
   return bytes;
 }
 
-double median_of(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
-}
-
 OutputCost measure_format(Simulation& simulation, const std::string& ending, std::size_t outputs,
                           const fs::path& folder) {
   fs::remove_all(folder);
@@ -83,7 +78,7 @@ OutputCost measure_format(Simulation& simulation, const std::string& ending, std
   OutputCost cost;
   const auto count = static_cast<double>(outputs);
   cost.finish = time_of([&] { require(writer.value()->finish()); }) / count;
-  cost.write = median_of(std::move(times));
+  cost.write = median(std::move(times));
   cost.bytes = bytes_in(folder) / count;
   fs::remove_all(folder);
   return cost;
@@ -96,7 +91,7 @@ double time_of_fields(Simulation& simulation, std::size_t outputs) {
     simulation.advance(1);
     times.push_back(time_of([&] { static_cast<void>(simulation.liquid_fields()); }));
   }
-  return median_of(std::move(times));
+  return median(std::move(times));
 }
 
 void add_rows(const OutputCase& measured, const fs::path& folder, Table& table) {

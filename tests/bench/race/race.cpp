@@ -1,17 +1,18 @@
 #include "tests/bench/race/race.h"
 
-#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "core/support/check.h"
 #include "server/cli/common/command.h"
 #include "tests/bench/options.h"
 #include "tests/bench/race/peer_run.h"
+#include "tests/bench/report/quantile.h"
 #include "tests/bench/report/table.h"
 #include "tests/bench/speed/machine.h"
 #include "tests/bench/speed/measure.h"
@@ -51,13 +52,6 @@ struct RaceTimes {
   std::vector<Real> vat;
   SpeedRow row;  ///< of the last round
 };
-
-Real median(std::vector<Real> values) {
-  VAT_CHECK(!values.empty());
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 Real median_ratio(const RaceTimes& times) {
   VAT_CHECK(times.peer.size() == times.vat.size());
