@@ -54,12 +54,21 @@ describe('AutoRange', () => {
     expect(range.range.max).toBeCloseTo(3, 3);
   });
 
-  it('has a width for equal values and without values', () => {
+  it('has a width without values', () => {
     const range = new AutoRange(false);
     range.add({ min: Infinity, max: -Infinity });
     expect(range.range).toEqual({ min: 0, max: 1 });
-    range.add({ min: 5, max: 5 });
-    expect(range.range).toEqual({ min: 4.5, max: 5.5 });
+  });
+
+  it.each([
+    [5, 4.5, 5.5],
+    [0, 0, 0.5],
+    [0.2, 0, 0.7],
+    [-2, -2.5, -1.5],
+  ])('has a width for equal values: %f', (value, min, max) => {
+    const range = new AutoRange(false);
+    range.add({ min: value, max: value });
+    expect(range.range).toEqual({ min, max });
   });
 
   it('has 0 in the middle of a diverging map if both signs occur', () => {

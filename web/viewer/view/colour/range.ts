@@ -20,7 +20,9 @@ export class AutoRange {
       const most = Math.max(-min, max);
       return { min: -most, max: most };
     }
-    return max > min ? { min, max } : { min: min - 0.5, max: max + 0.5 };
+    if (max > min) return { min, max };
+    // A quantity without a sign has no negative values, for example the speed of a body at rest.
+    return { min: min < 0 ? min - 0.5 : Math.max(min - 0.5, 0), max: max + 0.5 };
   }
 
   add({ min, max }: Range): void {
