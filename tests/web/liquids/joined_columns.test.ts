@@ -75,6 +75,7 @@ describe('JoinedColumns', () => {
     show(body.columns, many(150));
     joined.update([body]);
     expect(releases).toBe(0);
+    expect(firsts(joined.columns.names, 2)).toEqual(many(150));
     show(body.columns, many(5000));
     joined.update([body]);
     expect(releases).toBe(5);
