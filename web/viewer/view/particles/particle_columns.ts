@@ -81,12 +81,13 @@ export class ParticleColumns {
   }
 
   /** Writes the particle numbers and a row to those of several bodies, from particle `at` on. */
-  copyNamesTo({ values, texture }: Texels<Uint32Array>, at: number, row: number): void {
+  copyNamesTo(names: Texels<Uint32Array>, at: number, row: number): void {
+    const { values } = names;
     for (let i = 0; i < this.particles; ++i) {
       values[2 * (at + i)] = this.numberAt(i);
       values[2 * (at + i) + 1] = row;
     }
-    texture.needsUpdate = true;
+    names.changed();
   }
 
   /** The present number of particles, which can change for a liquid. */

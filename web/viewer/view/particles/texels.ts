@@ -81,6 +81,8 @@ export class Texels<Values extends Uint8Array | Uint16Array | Uint32Array | Int3
 
 /** For draw calls without values. */
 export const kNoValues = Texels.shown(0).texture;
+const kNoPlaces = Texels.places(0).texture;
+const kNoNames = Texels.names(0).texture;
 const kNoFroth = Texels.froth(0).texture;
 
 /** The textures of the particles of a draw call. */
@@ -97,12 +99,11 @@ export interface ParticleUniforms extends Record<string, IUniform> {
 }
 
 export function particleUniforms(): ParticleUniforms {
-  const places = Texels.places(0).texture;
   return {
-    center_texels: { value: places },
-    before_texels: { value: places },
+    center_texels: { value: kNoPlaces },
+    before_texels: { value: kNoPlaces },
     texel_grid: { value: new Vector4(0, 0, 0, 1) },
-    name_texels: { value: Texels.names(0).texture },
+    name_texels: { value: kNoNames },
     value_texels: { value: kNoValues },
     froth_texels: { value: kNoFroth },
   };
