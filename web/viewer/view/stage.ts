@@ -77,7 +77,7 @@ export class Stage {
     this.renderer.info.autoReset = false; // a picture has several passes
     this.renderer.setPixelRatio(fullRatio());
     this.scene.add(this.splats.surface);
-    this.fluid = new FluidPass(shared.behind, shared.sun);
+    this.fluid = new FluidPass(shared.behind, shared.sun, shared.walls);
     this.camera.up.set(0, 0, 1);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = !isCalm();

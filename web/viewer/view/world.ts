@@ -22,6 +22,7 @@ import type { Look } from './base/appearance';
 import { framedBox } from './base/framed';
 import { Ground, roundLength } from './base/ground';
 import type { Theme } from './base/theme';
+import { removeWalls, setWalls } from './base/wall_uniforms';
 import { Marks } from './marks/marks';
 import type { LiquidStyle } from './base/liquid_style';
 import type { Choice } from './base/settings';
@@ -355,6 +356,7 @@ export class World {
     const vat = this.description?.vat;
     if (!vat || !this.vat) return;
     this.vat.moveTo(offset);
+    setWalls(this.shared.walls, this.vat.box, vat.lid);
     this.vat.expand(this.seen);
     const [x, y, z] = offset;
     this.shared.floor.floor_z.value = vat.min[2] + z;
@@ -386,5 +388,6 @@ export class World {
     this.bodies = new Map();
     this.vat?.dispose();
     this.vat = undefined;
+    removeWalls(this.shared.walls);
   }
 }

@@ -1,5 +1,7 @@
 import { sunUniforms } from '../base/sun_uniforms';
 import type { SunUniforms } from '../base/sun_uniforms';
+import { wallUniforms } from '../base/wall_uniforms';
+import type { WallUniforms } from '../base/wall_uniforms';
 import { behindUniforms } from '../fluid/fluid_pass';
 import type { BehindUniforms } from '../fluid/fluid_pass';
 import { lookUniforms } from '../colour/look_uniforms';
@@ -13,6 +15,7 @@ export interface SharedUniforms {
   behind: BehindUniforms;
   look: LookUniforms;
   sun: SunUniforms;
+  walls: WallUniforms;
 }
 
 export function sharedUniforms(): SharedUniforms {
@@ -22,5 +25,6 @@ export function sharedUniforms(): SharedUniforms {
     behind: behindUniforms(),
     look: lookUniforms(),
     sun: sunUniforms(floor.floor_z),
+    walls: wallUniforms(),
   };
 }

@@ -4,6 +4,8 @@ import { kSun } from '../base/light';
 import { kScreenVertexShader } from '../base/screen';
 import { kSunlight } from '../base/sun_uniforms';
 import type { SunUniforms } from '../base/sun_uniforms';
+import { kWalls } from '../base/wall_uniforms';
+import type { WallUniforms } from '../base/wall_uniforms';
 
 /** The blurred coverage at the outline of a liquid. */
 const kOutline = 0.42;
@@ -48,6 +50,24 @@ const kSurface = /* glsl */ `
     return takes_back ? point - point_at(here - aside, back) : point_at(here + aside, ahead) - point;
   }
 
+  ${kWalls}
+
+  /**
+   * Moves a point that is near to the wall through which the eye sees it to this wall. Returns the
+   * share of the wall, 0 to 1.
+   */
+  float flatten(inout vec3 point, inout vec3 normal) {
+    mat3 to_world = transpose(mat3(viewMatrix));
+    vec3 way = to_world * point;
+    Entry entry = entry_of(eye, way); // 1 is at the point
+    if (entry.at <= 0.0) return 0.0;
+    float inward = (1.0 - entry.at) * -dot(way, entry.normal);
+    float share = 1.0 - smoothstep(0.6 * radius, 1.4 * radius, inward);
+    point *= mix(1.0, entry.at, share);
+    normal = normalize(mix(normal, mat3(viewMatrix) * entry.normal, share));
+    return share;
+  }
+
   vec3 normal_at(ivec2 here, float away) {
     vec3 point = point_at(here, away);
     return normalize(cross(slope(here, ivec2(1, 0), point), slope(here, ivec2(0, 1), point)));
@@ -58,28 +78,36 @@ const kLight = /* glsl */ `
   ${kEnvironment}
   ${kSunlight}
 
-  /** Returns the scene behind the liquid along the refracted ray; \`inside\` [m] is in the liquid. */
-  vec3 refracted(vec3 point, vec3 ray, vec3 normal, float inside, float front) {
+  /**
+   * Returns the place in the picture where the refracted ray ends: after the length \`inside\` [m]
+   * in the liquid, or at a wall or the floor. Long rays would hit other objects than the thickness
+   * is measured for.
+   */
+  vec2 refracted(vec3 point, vec3 ray, vec3 normal, float inside, float front) {
+    mat3 to_world = transpose(mat3(viewMatrix));
     vec3 way = refract(ray, normal, 0.75);
-    vec4 clip = projectionMatrix * vec4(point + min(inside, 12.0 * radius) * way, 1.0);
+    float length = min(min(inside, 12.0 * radius), max(exit_of(eye + to_world * point, to_world * way), 0.0));
+    vec4 clip = projectionMatrix * vec4(point + length * way, 1.0);
     vec2 bent = clamp(0.5 + 0.5 * clip.xy / clip.w, 0.001, 0.999);
     // Objects in front of the liquid are not refracted.
-    if (texture(behind_depth, bent).r < front) bent = at;
-    return texture(behind, bent).rgb;
+    return texture(behind_depth, bent).r < front ? at : bent;
   }
 
-  vec3 light_of(vec3 point, vec3 normal, vec4 sum, float foam, float front) {
+  /** \`glass\`: the share of a wall, through which the liquid is seen undistorted. */
+  vec3 light_of(vec3 point, vec3 normal, vec4 sum, float foam, float front, float glass) {
     vec3 ray = normalize(point);
     mat3 to_world = transpose(mat3(viewMatrix));
     vec3 n = to_world * normal;
     vec3 world = eye + to_world * point;
     vec3 colour = sum.rgb / sum.w;
-    float deep = sum.w / clarity;
+    vec2 bent = refracted(point, ray, normal, (1.0 - glass) * sum.w, front);
+    vec3 through = texture(behind, bent).rgb;
+    // Beside an object in the liquid, the ray passes more liquid than in front of the object.
+    float deep = max(sum.w, texture(thickness, bent).w) / clarity;
     float shade = sunlight(world, n);
     float toward = max(dot(n, ${kSun}), 0.0) * shade;
     float sky = 0.5 + 0.5 * n.z;
 
-    vec3 through = refracted(point, ray, normal, sum.w, front);
     vec3 passed = pow(clamp(colour, 0.03, 0.95), vec3(1.3 * deep)) * (1.0 - paint);
     // Light that small particles and bubbles in the liquid scatter.
     float murk = 1.0 - (1.0 - max(paint, 0.08)) * exp(-0.9 * deep) * (1.0 - paint);
@@ -109,17 +137,18 @@ const kLight = /* glsl */ `
     float cover = smoothstep(${kOutline} - edge, ${kOutline} + edge, surface.g);
     if (surface.r > 0.0 && cover > 0.0 && sum.w > 0.0) {
       vec3 point = point_at(here, surface.r);
+      vec3 normal = normal_at(here, surface.r);
+      float glass = flatten(point, normal);
       vec4 clip = projectionMatrix * vec4(point, 1.0);
       float front = 0.5 * clip.z / clip.w + 0.5;
       if (front < window_depth) {
         sum /= min(max(surface.g, ${kOutline}) + 0.1, 1.0); // the blur has spread the edge
-        vec3 normal = normal_at(here, surface.r);
         if (shows_normals) {
           gl_FragDepth = front;
           gl_FragColor = vec4(0.5 + 0.5 * transpose(mat3(viewMatrix)) * normal, 1.0);
           return;
         }
-        light = mix(light, light_of(point, normal, sum, surface.b, front), cover);
+        light = mix(light, light_of(point, normal, sum, (1.0 - 0.7 * glass) * surface.b, front, glass), cover);
         window_depth = front;
       }
     }
@@ -130,12 +159,13 @@ const kLight = /* glsl */ `
 `;
 
 /** Composes the liquid and the scene behind it; writes the depths of both. */
-export function fluidCompositeMaterial(sun: SunUniforms): ShaderMaterial {
+export function fluidCompositeMaterial(sun: SunUniforms, walls: WallUniforms): ShaderMaterial {
   return new ShaderMaterial({
     vertexShader: kScreenVertexShader,
     fragmentShader: kSurface + kLight,
     uniforms: {
       ...sun,
+      ...walls,
       behind: { value: null },
       behind_depth: { value: null },
       depth: { value: null },

@@ -1,19 +1,34 @@
 import { AddEquation, CustomBlending, GLSL3, MaxEquation, OneFactor, ShaderMaterial } from 'three';
 import { kImpostorHit, kImpostorVertexShader, kSquareOfParticle } from '../particles/impostor';
 import type { DrawnUniforms } from '../particles/impostor';
+import { kWalls } from '../base/wall_uniforms';
+import type { WallUniforms } from '../base/wall_uniforms';
 import type { BehindUniforms } from './fluid_pass';
+
+/** Drawn radius / particle radius. The spheres overlap and form a closed surface. */
+const kSize = 1.4;
+
+/** Points that are nearer to a wall, in particle radii, are drawn at the wall. */
+const kAtWall = 1.2;
 
 const kDepth = /* glsl */ `
     if (inside <= 0.0) discard;
-    vec3 point = (along - extent * sqrt(inside)) * ray;
+    float nearer = along - extent * sqrt(inside);
+    float farther = along + extent * sqrt(inside);
+    vec3 way = transpose(mat3(viewMatrix)) * ray;
+    vec3 middle = transpose(mat3(viewMatrix)) * view_center + cameraPosition;
+    if (all(greaterThan(middle, wall_low)) && all(lessThan(middle, wall_high))) {
+      Entry entry = entry_of(cameraPosition, way);
+      if (farther < entry.at || nearer > exit_of(cameraPosition, way)) discard;
+      float inward = (nearer - entry.at) * -dot(way, entry.normal);
+      if (entry.at > 0.0 && inward < ${kAtWall / kSize} * extent) nearer = entry.at;
+    }
+    vec3 point = nearer * ray;
     gl_FragDepth = depth_of(point);
     // The blur of the outline removes no isolated drops. They are white, as spray.
     nearest = vec4(-point.z, 1.0 + lone, max(foam, 0.6 * lone), 0.0);
   }
 `;
-
-/** Drawn radius / particle radius. The spheres overlap and form a closed surface. */
-const kSize = 1.4;
 
 /** Radius of a blurred particle / particle radius. It is large, so that particles do not appear. */
 const kBlurSize = 2.6;
@@ -34,12 +49,16 @@ const kThickness = /* glsl */ `
 `;
 
 /** Writes the view distance of the nearest point of each sphere [m], coverage and foam. */
-export function fluidDepthMaterial(body: DrawnUniforms, radius: number): ShaderMaterial {
+export function fluidDepthMaterial(
+  body: DrawnUniforms,
+  radius: number,
+  walls: WallUniforms,
+): ShaderMaterial {
   return new ShaderMaterial({
     glslVersion: GLSL3,
     vertexShader: kImpostorVertexShader,
-    fragmentShader: `out vec4 nearest;\nflat in float foam;\nflat in float lone;\n${kImpostorHit}${kDepth}`,
-    uniforms: { ...body, radius: { value: kSize * radius } },
+    fragmentShader: `out vec4 nearest;\nflat in float foam;\nflat in float lone;\n${kWalls}${kImpostorHit}${kDepth}`,
+    uniforms: { ...body, ...walls, radius: { value: kSize * radius } },
   });
 }
 

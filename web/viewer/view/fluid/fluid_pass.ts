@@ -20,6 +20,7 @@ import type {
 import { screenMesh } from '../base/screen';
 import { kLayers } from '../base/layers';
 import type { SunUniforms } from '../base/sun_uniforms';
+import type { WallUniforms } from '../base/wall_uniforms';
 import { fluidCompositeMaterial } from './fluid_composite';
 import { smoothingMaterial } from './smoothing';
 
@@ -83,8 +84,9 @@ export class FluidPass {
   constructor(
     private readonly uniforms: BehindUniforms,
     sun: SunUniforms,
+    walls: WallUniforms,
   ) {
-    this.composite = fluidCompositeMaterial(sun);
+    this.composite = fluidCompositeMaterial(sun, walls);
     this.result = screenMesh(this.composite);
     this.screen.add(this.smoother, this.result);
     uniforms.behind_depth.value = this.behind.depthTexture;

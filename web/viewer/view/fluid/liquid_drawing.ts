@@ -2,6 +2,7 @@ import { Color, Group, Mesh } from 'three';
 import type { ShaderMaterial } from 'three';
 import { kLayers } from '../base/layers';
 import type { LiquidStyle } from '../base/liquid_style';
+import type { WallUniforms } from '../base/wall_uniforms';
 import type { LookUniforms } from '../colour/look_uniforms';
 import { bodyUniforms } from '../particles/impostor';
 import { JoinedColumns } from '../particles/joined_columns';
@@ -10,6 +11,13 @@ import { fluidDepthMaterial, fluidShadowMaterial, fluidThicknessMaterial } from 
 import type { BehindUniforms } from './fluid_pass';
 import { Froth } from './froth';
 import type { LiquidBody, LiquidTime } from './liquid_body';
+
+/** The shared uniforms of liquids. */
+interface LiquidUniforms {
+  look: LookUniforms;
+  behind: BehindUniforms;
+  walls: WallUniforms;
+}
 
 /** Draws all liquids together in the styles fluid and splats. */
 export class LiquidDrawing {
@@ -22,12 +30,12 @@ export class LiquidDrawing {
   /** Whether the foam is that of the present columns. Only the style fluid needs it. */
   private hasFroth = false;
 
-  constructor({ look, behind }: { look: LookUniforms; behind: BehindUniforms }) {
+  constructor({ look, behind, walls }: LiquidUniforms) {
     this.uniforms = bodyUniforms(new Color(), look, true);
     const uniforms = { ...this.uniforms, ...this.joined.uniforms };
     this.add(splatDepthMaterial(uniforms, 1), 'splats', 'splats', 1);
     this.add(splatMaterial(uniforms, 1), 'splats', 'splats', 2);
-    this.add(fluidDepthMaterial(uniforms, 1), 'fluid', 'fluidDepth');
+    this.add(fluidDepthMaterial(uniforms, 1, walls), 'fluid', 'fluidDepth');
     this.add(fluidThicknessMaterial(uniforms, 1, behind), 'fluid', 'fluidThickness');
     this.add(fluidShadowMaterial(uniforms, 1, behind), 'fluid', 'liquidShadow');
     this.style = this.drawn;
