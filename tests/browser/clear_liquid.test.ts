@@ -60,8 +60,9 @@ const kPool = sceneOf(
   0.04,
   [1.6, 0.8, 0.4],
 );
-/** A region of its picture with the surface only, away from the walls. */
+/** Regions of its picture: the surface away from the walls, and the water behind the front wall. */
 const kSurface = { left: 0.47, top: 0.31, right: 0.6, bottom: 0.36 };
+const kFront = { left: 0.3, top: 0.5, right: 0.6, bottom: 0.55 };
 /** A sheet of 10 000 particles that runs along the vat. */
 const kSpacing = 0.02;
 const kSheet = sceneOf(
@@ -111,11 +112,14 @@ async function mask(): Promise<Mask> {
 }
 
 describe('a pool at rest', () => {
-  it('has vertical normals away from walls', async () => {
+  it('has a level surface away from walls, and a flat face at a wall', async () => {
     await show(kPool, 150, 'liquid:fluid,colour:normals');
     const normals = await fullPixelsOf(visits.viewer);
-    const deviation = normalDeviation(normals, kSurface);
+    const deviation = normalDeviation(normals, kSurface, [0, 0, 1]);
     expect(note('normals of a pool', deviation, '° RMS')).toBeLessThan(2);
+    // The angle of the colour's rounding error is 0.4°.
+    const atWall = normalDeviation(normals, kFront, [0, -1, 0]);
+    expect(note('normals at a wall', atWall, '° RMS')).toBeLessThan(0.5);
   });
 
   it('is drawn with the same pixels while it is paused', async () => {

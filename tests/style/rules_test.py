@@ -150,6 +150,11 @@ class SourceRules(RuleTest):
         self.accepts(source_rules.tabs, {"a.cpp": '"\\t"\n', "Makefile": "\tx\n"})
         self.refuses(source_rules.tabs, {"a.cpp": "x\n\tx\n"}, "a.cpp:2")
 
+    def test_conflicts(self):
+        self.accepts(source_rules.conflicts, {"a.md": "a <<<<<<< b\n=======\n"})
+        self.refuses(source_rules.conflicts, {"a.md": "a\n<<<<<<< " + "HEAD\n"}, "a.md:2")
+        self.refuses(source_rules.conflicts, {"a.md": ">>>>>>> " + "b\n"}, "a.md:1")
+
     def test_denied_words(self):
         rule = source_rules.denied_words
         self.accepts(rule, {"a.cpp": '// a hackle; "build/tmp/x"; HOME=/root\n'})

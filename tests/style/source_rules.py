@@ -161,6 +161,16 @@ def tabs(tree):
     ]
 
 
+def conflicts(tree):
+    """Marks of unresolved merges."""
+    return [
+        f"{path}:{number}: merge conflict"
+        for path, text in sorted(tree.files.items())
+        for number, line in numbered(text)
+        if line.startswith(("<<<<<<< ", ">>>>>>> "))
+    ]
+
+
 def denied_words(tree):
     return [
         f"{path}:{number}: {match.group()}"
@@ -180,6 +190,6 @@ def header_docstrings(tree):
 
 
 RULES = (
-    layering, determinism, clock, waiting, file_length, folder_size, line_ends, encoding, tabs, denied_words,
+    layering, determinism, clock, waiting, file_length, folder_size, line_ends, encoding, tabs, conflicts, denied_words,
     header_docstrings,
 )

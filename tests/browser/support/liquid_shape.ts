@@ -20,12 +20,13 @@ export function maskOf(first: FullPixels, second: FullPixels): Mask {
 }
 
 /**
- * Returns the root mean square of the angle between drawn normals and the vertical [degrees], over a
- * region of a picture that is coloured by normals.
+ * Returns the root mean square of the angle between drawn normals and a direction (a unit vector)
+ * [degrees], over a region of a picture that is coloured by normals.
  */
 export function normalDeviation(
   { width, height, data }: FullPixels,
   { left, top, right, bottom }: Region,
+  [ex, ey, ez]: readonly [number, number, number],
 ): number {
   let sum = 0;
   let count = 0;
@@ -37,7 +38,9 @@ export function normalDeviation(
         number,
         number,
       ];
-      sum += Math.atan2(Math.hypot(nx, ny), nz) ** 2;
+      const along = nx * ex + ny * ey + nz * ez;
+      const across = Math.hypot(nx - along * ex, ny - along * ey, nz - along * ez);
+      sum += Math.atan2(across, along) ** 2;
       ++count;
     }
   }

@@ -22,7 +22,7 @@ import type { Look } from './base/appearance';
 import { framedBox } from './base/framed';
 import { Ground, roundLength } from './base/ground';
 import type { Theme } from './base/theme';
-import { removeWalls, setWalls } from './base/wall_uniforms';
+import { removeWalls, setWalls } from './fluid/wall_uniforms';
 import { Marks } from './marks/marks';
 import type { LiquidStyle } from './base/liquid_style';
 import type { Choice } from './base/settings';

@@ -1,7 +1,7 @@
 import { sunUniforms } from '../base/sun_uniforms';
 import type { SunUniforms } from '../base/sun_uniforms';
-import { wallUniforms } from '../base/wall_uniforms';
-import type { WallUniforms } from '../base/wall_uniforms';
+import { wallUniforms } from '../fluid/wall_uniforms';
+import type { WallUniforms } from '../fluid/wall_uniforms';
 import { behindUniforms } from '../fluid/fluid_pass';
 import type { BehindUniforms } from '../fluid/fluid_pass';
 import { lookUniforms } from '../colour/look_uniforms';

@@ -4,8 +4,8 @@ import { kSun } from '../base/light';
 import { kScreenVertexShader } from '../base/screen';
 import { kSunlight } from '../base/sun_uniforms';
 import type { SunUniforms } from '../base/sun_uniforms';
-import { kWalls } from '../base/wall_uniforms';
-import type { WallUniforms } from '../base/wall_uniforms';
+import { kWalls } from './wall_uniforms';
+import type { WallUniforms } from './wall_uniforms';
 
 /** The blurred coverage at the outline of a liquid. */
 const kOutline = 0.42;

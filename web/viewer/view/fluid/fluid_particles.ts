@@ -1,8 +1,8 @@
 import { AddEquation, CustomBlending, GLSL3, MaxEquation, OneFactor, ShaderMaterial } from 'three';
 import { kImpostorHit, kImpostorVertexShader, kSquareOfParticle } from '../particles/impostor';
 import type { DrawnUniforms } from '../particles/impostor';
-import { kWalls } from '../base/wall_uniforms';
-import type { WallUniforms } from '../base/wall_uniforms';
+import { kWalls } from './wall_uniforms';
+import type { WallUniforms } from './wall_uniforms';
 import type { BehindUniforms } from './fluid_pass';
 
 /** Drawn radius / particle radius. The spheres overlap and form a closed surface. */

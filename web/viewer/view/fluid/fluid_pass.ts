@@ -20,7 +20,7 @@ import type {
 import { screenMesh } from '../base/screen';
 import { kLayers } from '../base/layers';
 import type { SunUniforms } from '../base/sun_uniforms';
-import type { WallUniforms } from '../base/wall_uniforms';
+import type { WallUniforms } from './wall_uniforms';
 import { fluidCompositeMaterial } from './fluid_composite';
 import { smoothingMaterial } from './smoothing';
 

@@ -2,7 +2,7 @@ import { Color, Group, Mesh } from 'three';
 import type { ShaderMaterial } from 'three';
 import { kLayers } from '../base/layers';
 import type { LiquidStyle } from '../base/liquid_style';
-import type { WallUniforms } from '../base/wall_uniforms';
+import type { WallUniforms } from './wall_uniforms';
 import type { LookUniforms } from '../colour/look_uniforms';
 import { bodyUniforms } from '../particles/impostor';
 import { JoinedColumns } from '../particles/joined_columns';
