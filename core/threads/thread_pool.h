@@ -16,6 +16,10 @@ namespace vat {
 /// TaskRunner with helper threads for callers of run(). Several threads can call run() at the same
 /// time. A caller executes blocks itself, and waits only for helpers that have started a block.
 ///
+/// Each thread begins with the same contiguous part of the blocks in every run, so that passes over
+/// the same data find it in the cache of the same core. A thread without blocks takes those of
+/// other threads.
+///
 /// Helpers poll for some microseconds before they sleep, because consecutive passes of a step have
 /// shorter gaps than the wake-up time of a thread. A run wakes sleeping helpers only if the run is
 /// long enough.
@@ -58,6 +62,7 @@ class ThreadPoolRunner final : public TaskRunner {
 
  private:
   using Block = std::function<void(std::size_t)>;
+  class Share;
   struct Job;
 
   std::size_t begin_alone(std::size_t block_count, const Block& block) const;
@@ -66,7 +71,8 @@ class ThreadPoolRunner final : public TaskRunner {
   bool should_wake(Clock::duration elapsed, std::size_t done, std::size_t left) const;
   void help(std::size_t number);
   bool help_any(std::size_t number, bool has_slept);
-  bool help_with(Job& job, bool has_slept);
+  bool help_with(Job& job, std::size_t number, bool has_slept);
+  bool none_polls() const;  // all helpers sleep or work
   std::size_t helper_limit() const;
   void stop();
 

@@ -7,6 +7,7 @@
 #include <condition_variable>
 #include <ctime>
 #include <future>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -147,12 +148,19 @@ TEST(TaskRunner, ShortRunsWakeNoHelpers) {
   EXPECT_FALSE(is_worth(microseconds(1000), 8, 0)) << "no work is left";
 }
 
-/// Runs blocks until `expected` threads have run one. Returns the threads that ran a block. A
+/// Runs blocks until `expected` threads have run one. Returns the first block of each thread. A
 /// thread waits for the others only in its second block, because the caller wakes a helper between
 /// two of its own blocks.
-std::set<std::thread::id> threads_of_a_long_run(ThreadPoolRunner& runner, std::size_t expected) {
+std::map<std::thread::id, std::size_t> first_blocks_of_a_long_run(ThreadPoolRunner& runner,
+                                                                  std::size_t expected) {
   Threads threads(expected);
-  runner.run(10, [&](std::size_t) {
+  std::mutex mutex;
+  std::map<std::thread::id, std::size_t> first;
+  runner.run(10, [&](std::size_t b) {
+    {
+      const std::lock_guard lock(mutex);
+      first.try_emplace(std::this_thread::get_id(), b);
+    }
     if (threads.has_arrived()) {
       EXPECT_TRUE(threads.arrive());
     } else {
@@ -160,7 +168,23 @@ std::set<std::thread::id> threads_of_a_long_run(ThreadPoolRunner& runner, std::s
       threads.note();
     }
   });
-  return threads.ids();
+  return first;
+}
+
+/// Returns the threads that ran a block of a long run.
+std::set<std::thread::id> threads_of_a_long_run(ThreadPoolRunner& runner, std::size_t expected) {
+  std::set<std::thread::id> ids;
+  for (const auto& [id, block] : first_blocks_of_a_long_run(runner, expected)) ids.insert(id);
+  return ids;
+}
+
+TEST(TaskRunner, EachThreadBeginsWithItsPartInEveryRun) {
+  ThreadPoolRunner runner(2);
+  for (int i = 0; i < 3; ++i) {
+    for (const auto& [id, block] : first_blocks_of_a_long_run(runner, 2)) {
+      EXPECT_EQ(block, id == std::this_thread::get_id() ? 0U : 5U);
+    }
+  }
 }
 
 TEST(TaskRunner, GuestsTakeThePlacesOfHelpers) {
