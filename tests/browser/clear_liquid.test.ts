@@ -62,7 +62,7 @@ const kPool = sceneOf(
 );
 /** Regions of its picture: the surface away from the walls, and the water behind the front wall. */
 const kSurface = { left: 0.47, top: 0.31, right: 0.6, bottom: 0.36 };
-const kFront = { left: 0.3, top: 0.5, right: 0.6, bottom: 0.55 };
+const kFront = { left: 0.3, top: 0.46, right: 0.6, bottom: 0.49 };
 /** A sheet of 10 000 particles that runs along the vat. */
 const kSpacing = 0.02;
 const kSheet = sceneOf(
