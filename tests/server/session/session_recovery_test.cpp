@@ -315,13 +315,13 @@ TEST_F(SessionRecoveryTest, AfterMuchWorkTheStateIsStored) {
   client().result("control.pause");
   client().result("control.step", {{"ticks", 300}});  // needs much more than a millisecond
   clock.advance(1s);
+  EXPECT_EQ(checkpoints(), 0);
   storage.checkpoint_after = 1ms;
   crash();
-  EXPECT_EQ(checkpoints(), 0);
   client().result("world.set_gravity", {{"gravity", {0, 0, -9}}});
   clock.advance(1s);
   life->server.flush();
-  EXPECT_EQ(checkpoints(), 1);
+  EXPECT_GE(checkpoints(), 1) << "the work of the recovery counts";
 }
 
 // Recovery from recent states, which are not synchronised.

@@ -86,7 +86,7 @@ const kLight = /* glsl */ `
   vec2 refracted(vec3 point, vec3 ray, vec3 normal, float inside, float front) {
     mat3 to_world = transpose(mat3(viewMatrix));
     vec3 way = refract(ray, normal, 0.75);
-    float length = min(min(inside, 12.0 * radius), max(exit_of(eye + to_world * point, to_world * way), 0.0));
+    float length = min(min(inside, 4.0 * radius), max(exit_of(eye + to_world * point, to_world * way), 0.0));
     vec4 clip = projectionMatrix * vec4(point + length * way, 1.0);
     vec2 bent = clamp(0.5 + 0.5 * clip.xy / clip.w, 0.001, 0.999);
     // Objects in front of the liquid are not refracted.
