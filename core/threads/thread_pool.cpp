@@ -26,6 +26,18 @@ constexpr std::size_t kCaller = 0;  // share of the caller; helper n has share n
 
 thread_local bool is_in_block = false;
 
+/// Marks the calling thread as one that runs a block.
+class InBlock {
+ public:
+  InBlock() : before_(std::exchange(is_in_block, true)) {}
+  ~InBlock() { is_in_block = before_; }
+  InBlock(const InBlock&) = delete;
+  InBlock& operator=(const InBlock&) = delete;
+
+ private:
+  const bool before_;
+};
+
 void pause() {
 #if defined(__x86_64__) || defined(__i386__)
   __builtin_ia32_pause();
@@ -159,7 +171,7 @@ struct ThreadPoolRunner::Job {
   bool do_block(std::size_t thread) {
     const std::optional<std::size_t> b = take(thread);
     if (!b) return false;
-    is_in_block = true;
+    const InBlock in_block;
     try {
       (*block)(*b);
     } catch (...) {
@@ -167,7 +179,6 @@ struct ThreadPoolRunner::Job {
       const std::lock_guard lock(error_mutex);
       if (!error) error = std::current_exception();
     }
-    is_in_block = false;
     return true;
   }
 };
@@ -221,6 +232,7 @@ std::size_t ThreadPoolRunner::begin_alone(std::size_t block_count, const Block& 
   const bool is_alone = block_count < 2 || is_in_block || helper_limit() == 0;
   const bool must_wake = none_polls();
   const Clock::time_point begin = is_alone ? Clock::time_point() : Clock::now();
+  const InBlock in_block;
   for (std::size_t b = 0; b < block_count; ++b) {
     block(b);
     if (is_alone) continue;

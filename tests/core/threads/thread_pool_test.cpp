@@ -282,7 +282,14 @@ TEST(TaskRunner, ACallerWaitsForItsOwnHelpersOnly) {
 TEST(TaskRunner, RunWithinABlockIsDoneByThatBlock) {
   ThreadPoolRunner runner(3);
   std::atomic<int> calls = 0;
-  runner.run(6, [&](std::size_t) { runner.run(5, [&](std::size_t) { ++calls; }); });
+  runner.run(6, [&](std::size_t) {
+    const auto outer = std::this_thread::get_id();
+    runner.run(5, [&](std::size_t) {
+      ++calls;
+      work();
+      EXPECT_EQ(std::this_thread::get_id(), outer);
+    });
+  });
   EXPECT_EQ(calls, 30);
 }
 

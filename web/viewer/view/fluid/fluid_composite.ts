@@ -122,7 +122,7 @@ const kLight = /* glsl */ `
     float shine = pow(max(dot(bounced, ${kSun}), 0.0), 250.0);
     vec3 light = mix(body, around, mirror) + 1.6 * shine * shade * (1.0 - 0.6 * paint);
     vec3 white = vec3(0.93, 0.96, 0.98) * (0.62 + 0.2 * sky + 0.22 * toward);
-    return mix(light, white, foam * (1.0 - paint));
+    return mix(light, white, foam * (1.0 - 0.7 * glass) * (1.0 - paint)); // foam is on the surface
   }
 
   void main() {
@@ -148,7 +148,7 @@ const kLight = /* glsl */ `
           gl_FragColor = vec4(0.5 + 0.5 * transpose(mat3(viewMatrix)) * normal, 1.0);
           return;
         }
-        light = mix(light, light_of(point, normal, sum, (1.0 - 0.7 * glass) * surface.b, front, glass), cover);
+        light = mix(light, light_of(point, normal, sum, surface.b, front, glass), cover);
         window_depth = front;
       }
     }
