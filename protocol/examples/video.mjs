@@ -1,6 +1,7 @@
 /**
  * video.mjs RECORDING.vatrec VIDEO.webm SECONDS URL: the viewer plays a recording in a browser
- * without a window, and saves it as a video. It needs `npm --prefix web ci` and Chromium.
+ * without a window, and saves it as a video. It needs `npm --prefix web ci` and the package
+ * chromium-headless-shell, or the path of another Chromium in CHROMIUM.
  */
 import { createRequire } from 'node:module';
 
@@ -9,7 +10,7 @@ const { chromium } = require('playwright-core');
 const [recording, video, seconds, url] = process.argv.slice(2);
 
 const browser = await chromium.launch({
-  executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium',
+  executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium-headless-shell',
   args: ['--no-sandbox', '--use-gl=angle', '--use-angle=swiftshader'],
 });
 const page = await browser.newPage({ viewport: { width: 1280, height: 720 } });

@@ -32,6 +32,7 @@ it('reserves space for the picture beside the sheet, whose forms have the width 
 it('tilts gravity as the device is tilted, relative to how it was held first', async () => {
   await visits.visit('dam-break', kPhone);
   const { page } = visits.viewer;
+  await page.context().grantPermissions(['accelerometer', 'gyroscope']);
   await unfold(visits.viewer, 'parameters-details');
   await page.click('#gravity-device');
   // This machine has no orientation sensor.

@@ -13,6 +13,7 @@ const kFlags = [
   '--use-gl=angle',
   '--use-angle=swiftshader',
   '--enable-unsafe-swiftshader',
+  '--disable-gpu-compositing',
 ];
 
 /** Limit of every wait [ms]. Only a fault reaches it, also on a slow, busy machine. */
@@ -20,7 +21,7 @@ export const kDeadlineMs = 120_000;
 
 /** Returns the path of the browser. */
 export function chromiumPath(): string {
-  return process.env.CHROMIUM ?? '/usr/bin/chromium';
+  return process.env.CHROMIUM ?? '/usr/bin/chromium-headless-shell';
 }
 
 /** Returns the launch options of Chromium. */

@@ -1,21 +1,21 @@
-import { chromium } from 'playwright-core';
 import type { Browser } from 'playwright-core';
 import { inject } from 'vitest';
+import { launchChromium } from './chromium';
 import type { Host } from './server';
 import { Viewer } from './viewer';
 import type { Look } from './viewer';
 
 let browser: Promise<Browser> | undefined;
 
-/** The Chromium process of the whole suite. */
+/** The Chromium process of the whole suite. It ends with the process of the tests. */
 export function sharedBrowser(): Promise<Browser> {
-  browser ??= chromium.connect(inject('chromium'));
+  browser ??= launchChromium();
   return browser;
 }
 
-/** The server of this process. Tests do not end it. */
+/** The server of the whole suite. Tests do not end it. */
 export const sharedServer: Host = {
-  url: inject('servers')[Number(process.env.VITEST_POOL_ID) - 1]!,
+  url: inject('server'),
   start: () => Promise.resolve(),
   kill: () => Promise.resolve(),
 };

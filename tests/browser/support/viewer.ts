@@ -204,9 +204,20 @@ function extendPanel(): void {
   if (!localStorage.getItem('vat.panel')) localStorage.setItem('vat.panel', 'open');
 }
 
-/** Runs in the browser, before the page's own scripts. */
+/**
+ * Runs in the browser, before the page's own scripts. The page draws at most 15 times per second.
+ * Otherwise, pages whose picture is not the subject would use the processors' time.
+ */
 function addBrake(): void {
-  const draw = window.requestAnimationFrame.bind(window);
+  const kPeriodMs = 60;
+  const next = window.requestAnimationFrame.bind(window);
+  let last = 0;
+  const draw = (callback: FrameRequestCallback): number =>
+    next((time) => {
+      if (time !== last && time - last < kPeriodMs) return void draw(callback);
+      last = time;
+      callback(time);
+    });
   const held: FrameRequestCallback[] = [];
   let isOn = false;
   window.requestAnimationFrame = (callback) => (isOn ? -held.push(callback) : draw(callback));
