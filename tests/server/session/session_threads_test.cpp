@@ -8,6 +8,8 @@ namespace vat::test::session_threads_test {
 namespace {
 
 constexpr int kTicks = 10;
+constexpr int kMostRounds = 100;  // of kTicks each; one is enough on free processors
+constexpr double kHelp = 1e6;     // processor time of helpers [ns]
 
 /// A scene of some thousand particles, so that waking a helper is worthwhile.
 Scene pool_scene() {
@@ -51,9 +53,9 @@ class SessionThreads : public testing::Test {
     client->result("control.reset");
     return client;
   }
-  std::string expected_hash() const {
+  static std::string expected_hash(int ticks = kTicks) {
     Simulation alone = Simulation::create(pool_scene()).value();
-    advance_ticks(alone, kTicks);
+    advance_ticks(alone, ticks);
     return hash_of(alone);
   }
 
@@ -66,11 +68,14 @@ class SessionThreads : public testing::Test {
 TEST_F(SessionThreads, ALoneSessionIsHelped) {
   TestServer server(catalogue, with_threads(4));
   const auto client = start(server);
-  const double before = helper_time();
-  client->result("control.step", {{"ticks", kTicks}});
-  EXPECT_GT(helper_time(), before + 1e6)
-      << "helpers take part in some hundred milliseconds of work";
-  EXPECT_EQ(client->result("session.hash").at("hash"), expected_hash());
+  const double helped = helper_time() + kHelp;
+  int rounds = 0;
+  // While all processors are busy, a helper can wake too late for a step.
+  for (; rounds < kMostRounds && helper_time() < helped; ++rounds) {
+    client->result("control.step", {{"ticks", kTicks}});
+  }
+  EXPECT_GE(helper_time(), helped);
+  EXPECT_EQ(client->result("session.hash").at("hash"), expected_hash(rounds * kTicks));
 }
 
 TEST_F(SessionThreads, OneThreadHasNoHelpers) {
