@@ -12,6 +12,9 @@ const visits = new Visits();
 
 const kFile = fileURLToPath(new URL('../golden/frame_recordings/twice.vatrec', import.meta.url));
 
+/** The size of a recording in a notebook. `@` is the page in base64. */
+const kFrame = '<iframe width="700" height="400" src="data:text/html;base64,@"></iframe>';
+
 async function open(buffer: Buffer): Promise<void> {
   await unfold(visits.viewer, 'kept-details');
   await visits.viewer.page.setInputFiles('#recording-input', {
@@ -51,10 +54,14 @@ it.each(['page', 'frame of a notebook'])('plays an exported recording as a %s', 
   try {
     const data = readFileSync(file).toString('base64');
     if (place === 'page') await page.goto(pathToFileURL(file).href);
-    else await page.setContent(`<iframe src="data:text/html;base64,${data}"></iframe>`);
+    else await page.setContent(kFrame.replace('@', data));
     const player = place === 'page' ? page.mainFrame() : page.frames()[1]!;
     await player.waitForSelector('#view[data-tick="3"]', kInTime);
     expect(await player.textContent('#replay')).toContain('of 0.06 s');
+    const picture = (await player.locator('#view').boundingBox())!;
+    const bar = (await player.locator('#replay').boundingBox())!;
+    expect(picture.height).toBeGreaterThan(bar.height);
+    expect(picture.y + picture.height).toBeLessThanOrEqual(bar.y);
   } finally {
     await page.close();
     rmSync(folder, { recursive: true });
