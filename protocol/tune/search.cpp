@@ -104,7 +104,7 @@ class Search {
 
   bool is_better_so_far(std::size_t d, std::size_t c) const {
     const std::size_t moment = outcomes_[c].segments.size();
-    if (moment == 0 || outcomes_[d].segments.size() < moment) return false;
+    if (moment < kFirstComparison || outcomes_[d].segments.size() < moment) return false;
     return seconds_to(d, moment) * kTimeMargin <= seconds_to(c, moment) &&
            error_at(d, moment) * kErrorMargin <= error_at(c, moment);
   }

@@ -71,6 +71,9 @@ struct Outcome {
 /// With an error margin of 2, the search dropped candidates on the front of dam-break and honey.
 inline constexpr double kTimeMargin = 1.25;
 inline constexpr Real kErrorMargin = 8;
+/// The first part can have other steps and iterations than the rest of the run. Comparisons after
+/// the first part dropped candidates on the front of deep-tank.
+inline constexpr std::size_t kFirstComparison = 2;
 
 /// Runs candidates 0 to settings.candidates - 1, and returns their outcomes:
 ///
@@ -82,7 +85,7 @@ inline constexpr Real kErrorMargin = 8;
 /// After each part of a run, a candidate c is dropped if another candidate d
 ///
 /// - is better at the same moment: time(d) kTimeMargin <= time(c) and error(d) kErrorMargin <=
-///   error(c); or
+///   error(c). This moment is at least kFirstComparison; or
 /// - is completed, its error is at most the lower bound of the error of c, and its time is at most
 ///   the present time of c, or the expected time of c divided by kTimeMargin.
 ///

@@ -28,6 +28,7 @@ struct Given {
   Real error = 1;                       ///< at the end
   std::size_t fails_at = kMoments + 1;  ///< moment
   std::vector<double> factors{1};       ///< of the time, by run; the last one is repeated
+  double first = 1;                     ///< factor of the time of the first part
 };
 
 class Machine {
@@ -52,7 +53,8 @@ class Machine {
       ++advances_;
       if (++moment_ == given_.fails_at) return {};
       const Real share = static_cast<Real>(moment_) / kMoments;
-      return Segment{factor_ * given_.seconds / kMoments, given_.error * share * share, 1, 2};
+      const double factor = moment_ == 1 ? factor_ * given_.first : factor_;
+      return Segment{factor * given_.seconds / kMoments, given_.error * share * share, 1, 2};
     }
 
    private:
@@ -92,9 +94,14 @@ TEST(Search, DominatedCandidatesEndEarly) {
   const auto outcomes = machine.search(once());
   EXPECT_THAT(kinds(outcomes),
               ElementsAre(OutcomeKind::completed, OutcomeKind::dropped, OutcomeKind::completed));
-  EXPECT_EQ(outcomes[1].segments.size(), 1u);
+  EXPECT_EQ(outcomes[1].segments.size(), tune::kFirstComparison);
   EXPECT_EQ(outcomes[1].dominated_by, 0u);
-  EXPECT_EQ(machine.advances(), 2 * kMoments + 1);
+  EXPECT_EQ(machine.advances(), 2 * kMoments + tune::kFirstComparison);
+}
+
+TEST(Search, ASlowFirstPartDropsNothing) {
+  Machine machine({{.seconds = 0.6, .error = 0.01}, {.seconds = 0.3, .error = 0.25, .first = 3}});
+  EXPECT_THAT(kinds(machine.search(once())), Each(OutcomeKind::completed));
 }
 
 TEST(Search, BetterCandidatesDropEarlierOnes) {
