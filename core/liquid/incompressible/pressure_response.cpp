@@ -17,6 +17,14 @@ Real gradient_factor(const Model& model, const LiquidModel& liquid) {
   return slope_factor(model, liquid) / liquid.slope_scale;
 }
 
+/// Sets the motion of a liquid slot and of its source.
+void set_liquid_motion(PairSources& sources, std::span<Vec3> motions, std::size_t slot,
+                       const Vec3& motion) {
+  motions[slot] = motion;
+  const Vec3 weighted = sources.weight(slot) * motion;
+  sources.set_motion(slot, motion_of(0, weighted));
+}
+
 PairMotion turned(const PairImage& image, const PairMotion& source) {
   return motion_of(0, image.turn({source.vx, source.vy, source.vz}));
 }
@@ -41,8 +49,10 @@ PressureResponse::PressureResponse(const ForceModel& force_model, Configuration&
       solids_(f_.work.of<LiquidScratch>().solids_in_liquid.grid.order()),
       has_solids_(has_solids(f_.model)),
       solids_move_(solids_move && has_solids_),
+      has_several_liquids_(has_several_liquids(f_.model)),
       greatest_mobility_(greatest_mobility(f_.model)) {
   scratch_.liquid_motion.resize(order_.size());
+  set_factors();
   f_.work.of<LiquidScratch>().sources.make_room_for_motions();
   if (!has_solids_) return;
   weigh_solids();
@@ -51,19 +61,32 @@ PressureResponse::PressureResponse(const ForceModel& force_model, Configuration&
   scratch_.solid_force.resize(solids_.size());
   scratch_.rigid_force.resize(f_.model.rigid_bodies.size());
   scratch_.rigid_torque.resize(f_.model.rigid_bodies.size());
+  scratch_.rigid_turning.resize(f_.model.rigid_bodies.size());
+}
+
+void PressureResponse::set_factors() {
+  const Model& model = f_.model;
+  const auto acceleration = by_material(model, [&](const LiquidModel& liquid) {
+    return slope_factor(model, liquid) / liquid.rest_density;
+  });
+  const auto rate =
+      by_material(model, [&](const LiquidModel& liquid) { return gradient_factor(model, liquid); });
+  scratch_.acceleration_factor.resize(order_.size());
+  scratch_.rate_factor.resize(order_.size());
+  for_blocks(f_.runner, order_.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      const Index i = order_[s];
+      const Index material = model.material[i];
+      scratch_.acceleration_factor[s] = model.inverse_mass[i] > 0 ? acceleration[material] : 0;
+      scratch_.rate_factor[s] = rate[material];
+    }
+  });
 }
 
 void PressureResponse::weigh_solids() {
   WeightFactors factors;
   factors.solid = 2;
   f_.work.of<LiquidScratch>().sources.set_weights(context_, factors);
-}
-
-void PressureResponse::set_liquid_motion(std::size_t slot, const Vec3& motion) {
-  LiquidScratch& buffers = f_.work.of<LiquidScratch>();
-  scratch_.liquid_motion[slot] = motion;
-  const Vec3 weighted = buffers.sources.weight(slot) * motion;
-  buffers.sources.set_motion(slot, motion_of(0, weighted));
 }
 
 void PressureResponse::charge(std::span<const Real> pressure) {
@@ -80,14 +103,14 @@ void PressureResponse::accelerate(std::span<const Real> pressure) {
 
 void PressureResponse::accelerate_liquid(std::span<const Real> pressure) {
   LiquidScratch& buffers = f_.work.of<LiquidScratch>();
-  const auto factor = by_material(f_.model, [&](const LiquidModel& liquid) {
-    return slope_factor(f_.model, liquid) / liquid.rest_density;
-  });
-  const auto set_acceleration = [&](const TargetCluster&, Index s, const Real* sums) {
-    const Index i = order_[s];
-    const Real own = f_.model.inverse_mass[i] > 0 ? factor[f_.model.material[i]] : 0;
-    const Vec3 sum = pressure[s] * buffers.volume_slopes[s].gradient + Eigen::Map<const Vec3>(sums);
-    set_liquid_motion(s, -own * sum);
+  const std::span<const Real> factor = scratch_.acceleration_factor;
+  const std::span<const VolumeSlope> slopes = buffers.volume_slopes;
+  const std::span<Vec3> motions = scratch_.liquid_motion;
+  // Copies of the spans, which the loop need not load again for each slot.
+  const auto set_acceleration = [=, &sources = buffers.sources](const TargetCluster&, Index s,
+                                                                const Real* sums) {
+    const Vec3 sum = pressure[s] * slopes[s].gradient + Eigen::Map<const Vec3>(sums);
+    set_liquid_motion(sources, motions, s, -factor[s] * sum);
   };
   buffers.liquid_clusters.for_each_sum<3>(f_.runner, charged_pair_inputs(context_), sums_.gradient,
                                           set_acceleration);
@@ -95,12 +118,12 @@ void PressureResponse::accelerate_liquid(std::span<const Real> pressure) {
 
 /// Computes the forces on solid particles and bodies, and the accelerations of all solid particles.
 void PressureResponse::push_solids(std::span<const Real> pressure) {
-  if (has_several_liquids(f_.model)) {
+  if (has_several_liquids_) {
     set_slope_weights(context_);
     charge(pressure);
   }
   sum_solid_forces();
-  if (has_several_liquids(f_.model)) weigh_solids();
+  if (has_several_liquids_) weigh_solids();
   sum_rigid_forces();
   for_blocks(f_.runner, solids_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
@@ -139,6 +162,8 @@ void PressureResponse::sum_rigid_forces() {
     scratch_.rigid_force[b] = sum;
     scratch_.rigid_torque[b] = torque;
     apply_axle(rigid, scratch_.rigid_force[b], scratch_.rigid_torque[b]);
+    scratch_.rigid_turning[b] =
+        angular_velocity(rigid, at_.rigid[b].orientation, scratch_.rigid_torque[b]);
   }
 }
 
@@ -149,17 +174,17 @@ Vec3 PressureResponse::solid_acceleration(Index particle) const {
     return model.inverse_mass[particle] * scratch_.solid_force[particle - model.liquid_count];
   }
   const Index b = model.bodies[model.body[particle]].rigid;
-  const RigidState& state = at_.rigid[b];
-  const Vec3 turning =
-      angular_velocity(model.rigid_bodies[b], state.orientation, scratch_.rigid_torque[b]);
+  const Vec3 offset = at_.position[particle] - at_.rigid[b].center_of_mass;
   return model.rigid_bodies[b].inverse_mass * scratch_.rigid_force[b] +
-         turning.cross(at_.position[particle] - state.center_of_mass);
+         scratch_.rigid_turning[b].cross(offset);
 }
 
 void PressureResponse::see_velocities(const Vec3& wall_velocity) {
+  PairSources& sources = f_.work.of<LiquidScratch>().sources;
   for_blocks(f_.runner, order_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
-      set_liquid_motion(s, at_.velocity[order_[s]] - wall_velocity);
+      set_liquid_motion(sources, scratch_.liquid_motion, s,
+                        at_.velocity[order_[s]] - wall_velocity);
     }
   });
   if (!has_solids_) return;
@@ -173,7 +198,7 @@ void PressureResponse::compress(std::span<Real> rate) {
 }
 
 void PressureResponse::compress(std::span<Real> product, std::span<const Real> scale, Real factor) {
-  compress_to(product, [&](std::size_t s) { return factor * scale[s]; });
+  compress_to(product, [=](std::size_t s) { return factor * scale[s]; });
 }
 
 template <class Scale>
@@ -188,14 +213,14 @@ void PressureResponse::compress_to(std::span<Real> rate, Scale&& scale) {
         return motion_of(0, weighted);
       },
       turned);
-  const auto factor = by_material(
-      f_.model, [&](const LiquidModel& liquid) { return gradient_factor(f_.model, liquid); });
-  buffers.liquid_clusters.for_each_sum<1>(
-      f_.runner, pair_inputs(context_), sums_.divergence,
-      [&](const TargetCluster&, Index s, const Real* sum) {
-        const Real own = scratch_.liquid_motion[s].dot(buffers.volume_slopes[s].gradient);
-        rate[s] = (own - *sum) * factor[f_.model.material[order_[s]]] * scale(s);
-      });
+  const std::span<const Real> factor = scratch_.rate_factor;
+  const std::span<const VolumeSlope> slopes = buffers.volume_slopes;
+  const std::span<const Vec3> motions = scratch_.liquid_motion;
+  buffers.liquid_clusters.for_each_sum<1>(f_.runner, pair_inputs(context_), sums_.divergence,
+                                          [=](const TargetCluster&, Index s, const Real* sum) {
+                                            const Real own = motions[s].dot(slopes[s].gradient);
+                                            rate[s] = (own - *sum) * factor[s] * scale(s);
+                                          });
 }
 
 void PressureResponse::add(Real share) {

@@ -10,12 +10,15 @@ namespace vat {
 
 /// Buffers of PressureResponse.
 struct ResponseScratch {
+  std::vector<Real> acceleration_factor;  ///< by liquid slot: -a / sum of accelerate(); 0 if fixed
+  std::vector<Real> rate_factor;          ///< by liquid slot: rate / sum of compress()
   std::vector<Vec3> liquid_motion;  ///< by liquid slot: velocity [m/s] or acceleration [m/s^2]
   std::vector<Vec3> liquid_whole;   ///< by liquid slot: total acceleration [m/s^2]
   std::vector<Vec3> solid_motion;   ///< by solid slot: velocity [m/s] or acceleration [m/s^2]
   std::vector<Vec3> solid_force;    ///< by solid particle [N]
   std::vector<Vec3> rigid_force;    ///< by rigid body [N]
   std::vector<Vec3> rigid_torque;   ///< by rigid body, about its centre of mass [N m]
+  std::vector<Vec3> rigid_turning;  ///< by rigid body: angular acceleration by the torque [1/s^2]
   std::vector<Vec3> solid_force_whole;
   std::vector<Vec3> rigid_force_whole;
   std::vector<Vec3> rigid_torque_whole;
@@ -68,10 +71,10 @@ class PressureResponse {
   void shift(Real share);
 
  private:
+  /// Sets the factors of the liquid slots. The sums would otherwise collect them in each iteration.
+  void set_factors();
   /// Doubles the weights of solids, because solids count as mirror images.
   void weigh_solids();
-  /// Sets the motion of a liquid slot and of its source.
-  void set_liquid_motion(std::size_t slot, const Vec3& motion);
   void charge(std::span<const Real> pressure);
   void accelerate_liquid(std::span<const Real> pressure);
   template <class Scale>
@@ -94,6 +97,7 @@ class PressureResponse {
   const std::span<const Index> solids_;
   const bool has_solids_;
   const bool solids_move_;
+  const bool has_several_liquids_;
   bool has_whole_ = false;
   const Real greatest_mobility_;  ///< maximum of 1/m over the liquids [1/kg]
 };
