@@ -216,11 +216,12 @@ void PressureResponse::compress_to(std::span<Real> rate, Scale&& scale) {
   const std::span<const Real> factor = scratch_.rate_factor;
   const std::span<const VolumeSlope> slopes = buffers.volume_slopes;
   const std::span<const Vec3> motions = scratch_.liquid_motion;
+  const auto set_rate = [=](const TargetCluster&, Index s, const Real* sum) {
+    const Real own = motions[s].dot(slopes[s].gradient);
+    rate[s] = (own - *sum) * factor[s] * scale(s);
+  };
   buffers.liquid_clusters.for_each_sum<1>(f_.runner, pair_inputs(context_), sums_.divergence,
-                                          [=](const TargetCluster&, Index s, const Real* sum) {
-                                            const Real own = motions[s].dot(slopes[s].gradient);
-                                            rate[s] = (own - *sum) * factor[s] * scale(s);
-                                          });
+                                          set_rate);
 }
 
 void PressureResponse::add(Real share) {

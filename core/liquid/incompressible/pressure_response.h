@@ -10,8 +10,8 @@ namespace vat {
 
 /// Buffers of PressureResponse.
 struct ResponseScratch {
-  std::vector<Real> acceleration_factor;  ///< by liquid slot: -a / sum of accelerate(); 0 if fixed
-  std::vector<Real> rate_factor;          ///< by liquid slot: rate / sum of compress()
+  std::vector<Real> acceleration_factor;  ///< by liquid slot: slope_factor() / rho, or 0 if fixed
+  std::vector<Real> rate_factor;          ///< by liquid slot: slope_factor() / G
   std::vector<Vec3> liquid_motion;  ///< by liquid slot: velocity [m/s] or acceleration [m/s^2]
   std::vector<Vec3> liquid_whole;   ///< by liquid slot: total acceleration [m/s^2]
   std::vector<Vec3> solid_motion;   ///< by solid slot: velocity [m/s] or acceleration [m/s^2]
