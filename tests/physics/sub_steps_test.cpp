@@ -48,6 +48,8 @@ TEST_P(SubSteps, ConserveMomentum) {
   EXPECT_LT(report.least_step, report.greatest_step / 4);
   EXPECT_GT((end - start).norm(), 0.1 * start.norm());  // the liquids have pushed it
   watch.expect_momentum();
+  // The density solve of incompressible liquids shifts positions without impulses.
+  if (GetParam() == PressureSolver::tait) watch.expect_angular_momentum(1e-10);
 }
 
 // The liquids determine the whole step, and are evaluated once in it.
