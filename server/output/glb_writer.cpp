@@ -40,7 +40,7 @@ struct PoseSeries {
     if (!rotations.empty()) {  // the sign for the shorter way from the last rotation
       const float* last = rotations.data() + rotations.size() - 4;
       Real product = 0;
-      for (Eigen::Index i = 0; i < 4; ++i) product += turn.coeffs()[i] * Real{last[i]};
+      for (Eigen::Index i = 0; i < 4; ++i) product += turn.coeffs()[i] * static_cast<Real>(last[i]);
       if (product < 0) turn.coeffs() = -turn.coeffs();
     }
     for (const Real value : turn.coeffs()) rotations.push_back(static_cast<float>(value));

@@ -31,7 +31,7 @@ TEST(BenchRace, SceneFillsACubicMetreByItsParticles) {
   const Json scene = peer_scene({.program = "bin/SPHSimulator", .edge = 22});
   const Json& block = scene["FluidBlocks"][0];
   // The outer particles are one spacing from the walls, so the block has 23 spacings.
-  for (int axis = 0; axis < 3; ++axis) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
     EXPECT_NEAR(block["end"][axis].get<Real>() - block["start"][axis].get<Real>(), 23.0 / 22,
                 1e-12);
   }

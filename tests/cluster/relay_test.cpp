@@ -209,7 +209,7 @@ TEST(Relay, AViewerGetsTheAttributesThatItWants) {
   Received& relayed = paused.received;
   ASSERT_TRUE(wait_until([&] { return relayed.count > 0; }));
   client::FramesSubscribe::Params wish;
-  wish.attributes.emplace().speed = 0.01;
+  wish.attributes = client::FramesSubscribe::Params::Attributes{.speed = 0.01};
   viewer.call<client::FramesSubscribe>(wish).get();
   ASSERT_TRUE(wait_until([&] {
     const std::lock_guard lock(relayed.mutex);

@@ -17,17 +17,17 @@ namespace {
 /// Returns sn, cn and dn of the modulus k by the descending Landen transformation (M. Abramowitz,
 /// I. A. Stegun, Handbook of Mathematical Functions, 16.4).
 std::array<Real, 3> jacobi(Real u, Real k) {
-  constexpr int kSteps = 6;
+  constexpr std::size_t kSteps = 6;
   std::array<Real, kSteps + 1> a{1};
   std::array<Real, kSteps + 1> c{k};
   Real b = std::sqrt(1 - k * k);
-  for (int n = 1; n <= kSteps; ++n) {
+  for (std::size_t n = 1; n <= kSteps; ++n) {
     a[n] = (a[n - 1] + b) / 2;
     c[n] = (a[n - 1] - b) / 2;
     b = std::sqrt(a[n - 1] * b);
   }
-  Real phi = std::ldexp(a[kSteps] * u, kSteps);
-  for (int n = kSteps; n > 0; --n) phi = (phi + std::asin(c[n] / a[n] * std::sin(phi))) / 2;
+  Real phi = std::ldexp(a[kSteps] * u, static_cast<int>(kSteps));
+  for (std::size_t n = kSteps; n > 0; --n) phi = (phi + std::asin(c[n] / a[n] * std::sin(phi))) / 2;
   const Real sn = std::sin(phi);
   return {sn, std::cos(phi), std::sqrt(1 - k * k * sn * sn)};
 }

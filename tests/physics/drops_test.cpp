@@ -169,7 +169,8 @@ TEST(Drops, WithCurvatureStayTogetherAndKeepTheirMomentum) {
   watch.expect_momentum();
   watch.expect_angular_momentum(1e-10);
   const Vec3 center = simulation.diagnostics().bodies[0].center_of_mass;
-  for (const Vec3& p : simulation.bodies()[0].positions) {
+  const BodyView end = simulation.bodies()[0];
+  for (const Vec3& p : end.positions) {
     EXPECT_LT((p - center).norm(), 1.3 * kRadius);
   }
 }

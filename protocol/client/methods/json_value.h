@@ -89,7 +89,7 @@ void read_member(const Json& json, const char* name, std::optional<Value>& value
   const auto member = json.find(name);
   value.reset();
   if (member == json.end() || member->is_null()) return;
-  read_member(json, name, value.emplace());
+  read_member(json, name, value.emplace(Value{}));
 }
 
 inline void read_member(const Json& json, const char* name, Json& value) {

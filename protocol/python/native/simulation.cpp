@@ -12,6 +12,8 @@ namespace py = pybind11;
 namespace vat::python {
 namespace {
 
+using Turn = HeldSimulation::Turn;
+
 std::unique_ptr<HeldSimulation> create(const std::string& text, const std::string& folder,
                                        std::size_t threads, const std::string& instructions) {
   const Scene scene = value_of(read_scene_text(text, meshes_in_folder(folder)));
@@ -62,7 +64,7 @@ struct Totals {
 
 /// Takes steps tick by tick. A signal, such as Ctrl-C, ends the call between two ticks.
 py::dict step(HeldSimulation& held, std::uint64_t steps) {
-  HeldSimulation::Turn turn(held);
+  Turn turn(held);
   Simulation& simulation = turn.change();
   Totals totals;
   for (std::uint64_t left = steps; left > 0 && !totals.report.failed;) {
@@ -81,7 +83,6 @@ py::dict step(HeldSimulation& held, std::uint64_t steps) {
 }  // namespace
 
 void bind_simulation(SimulationClass& simulation) {
-  using Turn = HeldSimulation::Turn;
   simulation.def(py::init(&create));
   simulation.def_static("load", [](const py::bytes& bytes, std::size_t threads) {
     return std::make_unique<HeldSimulation>(bytes_of(bytes), threads);

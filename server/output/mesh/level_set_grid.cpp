@@ -36,7 +36,7 @@ bool find_vertex(const LevelSetGrid::Block& block, const Node& cell, Vec3& verte
       const float end = levels[static_cast<std::size_t>(corner | 1 << axis)];
       if ((begin < 0) == (end < 0)) continue;
       Vec3 place(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
-      place[axis] = Real{begin} / (Real{begin} - Real{end});
+      place[axis] = static_cast<Real>(begin) / (static_cast<Real>(begin) - static_cast<Real>(end));
       vertex += place;
       ++crossings;
     }

@@ -89,7 +89,7 @@ Real retreat(const BlockSums& sums, std::size_t node, const Vec3& mean_offset) {
 /// Returns the distance from the surface at a node [m], negative inside of the liquid.
 Real level_at(const BlockSums& sums, std::size_t node) {
   const Real weight = sums.weight[node];
-  if (weight < 1e-12) return LevelSetGrid::kOutside;
+  if (weight < 1e-12) return static_cast<Real>(LevelSetGrid::kOutside);
   const Vec3 mean_offset =
       Vec3(sums.offset[0][node], sums.offset[1][node], sums.offset[2][node]) / weight;
   const Real radius = kDistance * sums.radius[node] / weight;
@@ -105,10 +105,11 @@ void add_particle(const LevelSetGrid& grid, const LevelSetGrid::Block& block, co
   const Real range = kRange * radius;
   std::array<int, 3> begin{};
   std::array<int, 3> end{};
-  for (int axis = 0; axis < 3; ++axis) {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto first = static_cast<Real>(block.first_node[axis]);
-    const Real low = std::ceil((position[axis] - range) / grid.cell() - first);
-    const Real high = std::floor((position[axis] + range) / grid.cell() - first) + 1;
+    const Real center = position[static_cast<Eigen::Index>(axis)];
+    const Real low = std::ceil((center - range) / grid.cell() - first);
+    const Real high = std::floor((center + range) / grid.cell() - first) + 1;
     begin[axis] = static_cast<int>(std::clamp<Real>(low, 0, kEdge));
     end[axis] = static_cast<int>(std::clamp<Real>(high, begin[axis], kEdge));
   }

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <limits>
-#include <ranges>
 
 namespace vat::bench {
 
@@ -24,7 +23,8 @@ double cost_between(const Solution& coarse, const Solution& fine, Real error,
 std::optional<Price> price_of(const std::vector<Solution>& solutions, const Method& method,
                               Real error, double (*cost)(const Solution&)) {
   const Solution* coarsest = nullptr;
-  for (const Solution& solution : std::views::reverse(solutions)) {
+  for (auto at = solutions.rbegin(); at != solutions.rend(); ++at) {
+    const Solution& solution = *at;
     if (name_of(solution.method) != name_of(method)) continue;
     if (is_converging(solution) && solution.error <= error) {
       coarsest = &solution;

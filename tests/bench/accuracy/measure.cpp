@@ -147,7 +147,8 @@ std::optional<Solution> cheapest(const std::vector<Solution>& solutions, Real er
                                  double (*cost)(const Solution&)) {
   std::optional<Solution> best;
   for (const Method& method : all_methods()) {
-    for (const Solution& solution : std::views::reverse(solutions)) {
+    for (auto at = solutions.rbegin(); at != solutions.rend(); ++at) {
+      const Solution& solution = *at;
       if (name_of(solution.method) != name_of(method)) continue;
       if (!is_solved(solution) || !(solution.error <= error)) break;
       if (!best || cost(solution) < cost(*best)) best = solution;

@@ -114,9 +114,9 @@ FanoutResult summarise(const Sightings& seen, std::size_t viewers, double second
   if (seen.frames > 0) {
     result.frame_bytes = static_cast<double>(seen.bytes) / static_cast<double>(seen.frames);
   }
-  result.age_median = quantile(seen.ages, 0.5);
-  result.age_99 = quantile(seen.ages, 0.99);
-  result.first_frame_99 = quantile(seen.first_frames, 0.99);
+  result.age_median = static_cast<double>(quantile(seen.ages, 0.5));
+  result.age_99 = static_cast<double>(quantile(seen.ages, 0.99));
+  result.first_frame_99 = static_cast<double>(quantile(seen.first_frames, 0.99));
   result.joins = seen.joins;
   result.closed = seen.closed;
   return result;

@@ -21,7 +21,7 @@ double drawn_quantile(const Segments& segments, double share, std::mt19937& rand
     const std::vector<float>& segment = segments[draw(random)];
     values.insert(values.end(), segment.begin(), segment.end());
   }
-  return quantile(std::move(values), share);
+  return static_cast<double>(quantile(std::move(values), share));
 }
 
 }  // namespace
@@ -29,7 +29,7 @@ double drawn_quantile(const Segments& segments, double share, std::mt19937& rand
 double pooled_quantile(const Segments& segments, double share) {
   std::vector<float> values;
   for (const auto& segment : segments) values.insert(values.end(), segment.begin(), segment.end());
-  return quantile(std::move(values), share);
+  return static_cast<double>(quantile(std::move(values), share));
 }
 
 QuantileRatio quantile_ratio(const Segments& a, const Segments& b, double share) {
@@ -43,8 +43,8 @@ QuantileRatio quantile_ratio(const Segments& a, const Segments& b, double share)
     const double of_a = drawn_quantile(a, share, random);
     draws.push_back(static_cast<float>(drawn_quantile(b, share, random) / of_a));
   }
-  ratio.low = quantile(draws, kOutside);
-  ratio.high = quantile(draws, 1 - kOutside);
+  ratio.low = static_cast<double>(quantile(draws, kOutside));
+  ratio.high = static_cast<double>(quantile(draws, 1 - kOutside));
   return ratio;
 }
 

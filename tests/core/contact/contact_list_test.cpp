@@ -73,8 +73,8 @@ Found by_brute_force(const Moved& moved, Index i, Real slack) {
         model.periodic.nearest(Vec3(model.periodic.wrap(at[i]) - model.periodic.wrap(at[j])));
     if (x.norm() < contact.threshold + slack) found.emplace_back(j, x.norm());
   }
-  std::ranges::stable_partition(
-      found, [&](const auto& pair) { return model.body[pair.first] != model.body[i]; });
+  std::stable_partition(found.begin(), found.end(),
+                        [&](const auto& pair) { return model.body[pair.first] != model.body[i]; });
   return found;
 }
 

@@ -79,14 +79,14 @@ TEST(Guard, FindsTheFirstOfManyForAnyThreads) {
   Configuration& at = probe.state().now;
   ASSERT_GT(at.position.size(), 6 * kBlockSize);
   const GuardBounds bounds = guard_bounds(probe.model());
-  for (const std::size_t threads : {1, 2, 4}) {
+  for (const std::size_t threads : {1U, 2U, 4U}) {
     ThreadRunner runner(threads);
     EXPECT_FALSE(find_fault(probe.model(), at, bounds, kStep, &runner)) << threads;
   }
   for (const std::size_t bad : {2 * kBlockSize + 7, 2 * kBlockSize + 9, 5 * kBlockSize}) {
     at.position[bad].x() = kNan;
   }
-  for (const std::size_t threads : {1, 2, 4}) {
+  for (const std::size_t threads : {1U, 2U, 4U}) {
     ThreadRunner runner(threads);
     expect_fault(find_fault(probe.model(), at, bounds, kStep, &runner), non_finite, 0,
                  2 * kBlockSize + 7);

@@ -121,7 +121,7 @@ TEST(Kernel, SumsOverALattice) {
     };
     EXPECT_NEAR(sum(0), sums[0], 1e-6) << ratio;
     EXPECT_NEAR(sum(1), sums[1], 1e-6) << ratio;
-    for (const int k : {0, 1}) {
+    for (const std::size_t k : {0U, 1U}) {
       const SmoothingKernel kernel(static_cast<KernelId>(k), ratio, 3);
       EXPECT_NEAR(lattice_sum(kernel, ratio, 1, 3), sums[2 + k], 1e-6) << k << ' ' << ratio;
     }

@@ -124,9 +124,10 @@ Expected add_up(const Pairs& pairs, KernelId id, std::size_t entries, Term&& ter
                       kernel.value(q) / kernel.scale(),
                       kernel.slope_over_r(q) / kernel.slope_scale(),
                       Vec3(p.vx - r.vx, p.vy - r.vy, p.vz - r.vz)};
-      term(pair, [&](std::size_t entry, Real value) {
-        expected.sums[i * entries + entry] += value;
-        expected.sizes[i * entries + entry] += std::abs(value);
+      term(pair, [&](int entry, Real value) {
+        const std::size_t k = i * entries + static_cast<std::size_t>(entry);
+        expected.sums[k] += value;
+        expected.sizes[k] += std::abs(value);
       });
     }
   }

@@ -37,7 +37,7 @@ TEST(Connections, HaveTheStrainOfEachSpringOnce) {
   ASSERT_EQ(all.springs.sample.size(), 4U);
   const Connections of_second = simulation.connections({second, 100}).value();
   ASSERT_EQ(of_second.springs.sample.size(), 2U);
-  for (const std::size_t b : {0, 1}) {
+  for (const std::size_t b : {0U, 1U}) {
     const BodyId id = b == 0 ? first : second;
     const ConnectedPair& stretched = all.springs.sample[2 * b];
     EXPECT_EQ(stretched.a, (ConnectedParticle{id, 0}));

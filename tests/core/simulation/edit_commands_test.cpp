@@ -24,7 +24,7 @@ class MoveBody : public testing::Test {
 
 TEST_F(MoveBody, ShiftsLiquidAndDeformableBodiesAsTheyAre) {
   simulation.advance(100);
-  for (const std::size_t body : {0, 1}) {
+  for (const std::size_t body : {0U, 1U}) {
     const auto places = copy_of(simulation.bodies()[body].positions);
     const auto velocities = copy_of(simulation.bodies()[body].velocities);
     const auto others = copy_of(simulation.bodies()[2].positions);
@@ -37,7 +37,8 @@ TEST_F(MoveBody, ShiftsLiquidAndDeformableBodiesAsTheyAre) {
     EXPECT_EQ(copy_of(simulation.bodies()[body].velocities), velocities);
     EXPECT_EQ(copy_of(simulation.bodies()[2].positions), others);
     ASSERT_TRUE(simulation.move_body(id(body), {target, {}, Vec3(1, 2, 3)}).ok());
-    for (const Vec3& v : simulation.bodies()[body].velocities) EXPECT_EQ(v, Vec3(1, 2, 3));
+    const BodyView moved = simulation.bodies()[body];
+    for (const Vec3& v : moved.velocities) EXPECT_EQ(v, Vec3(1, 2, 3));
     expect_goes_on(simulation, 10);
   }
 }

@@ -98,7 +98,7 @@ TEST(SetNumerics, ReleaseABodyAtItsTime) {
 }
 
 TEST(SetNumerics, KeepHeldBodiesAsNewlyGrabbedOnes) {
-  for (const std::size_t body : {0, 1, 2}) {
+  for (const std::size_t body : {0U, 1U, 2U}) {
     Simulation before = make_simulation(ticked_scene());
     Simulation after = make_simulation(ticked_scene());
     const BodyId id = before.bodies()[body].id;

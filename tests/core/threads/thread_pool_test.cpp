@@ -29,7 +29,7 @@ INSTANTIATE_TEST_SUITE_P(Counts, TaskRunnerThreads, testing::Values(1, 2, 4, 7),
 TEST_P(TaskRunnerThreads, RunsEachBlockExactlyOnce) {
   ThreadPoolRunner runner(GetParam());
   EXPECT_EQ(runner.thread_count(), GetParam());
-  for (const std::size_t block_count : {0, 1, 2, 3, 8, 1000}) {
+  for (const std::size_t block_count : {0U, 1U, 2U, 3U, 8U, 1000U}) {
     std::vector<std::atomic<int>> calls(block_count);
     runner.run(block_count, [&](std::size_t b) { ++calls.at(b); });
     for (const auto& count : calls) EXPECT_EQ(count, 1);

@@ -63,7 +63,7 @@ Bytes make_data(std::size_t count) {
 }
 
 TEST(LineMarks, RestoreTheData) {
-  for (const std::size_t count : {0, 1, 1000, 300'000, 3'000'000}) {
+  for (const std::size_t count : {0U, 1U, 1000U, 300'000U, 3'000'000U}) {
     const Bytes data = make_data(count);
     Bytes text = data;
     LineMarks marks;

@@ -105,7 +105,7 @@ TEST(RecordingIndex, FindsTheKeyFrameBefore) {
 TEST(RecordingIndex, TruncatedIsTheIndexOfTheFirstFrames) {
   File shorter;
   shorter.description("{\"epoch\":1}").frame(true).frame(false, 61).frame(true, 62);
-  for (const std::size_t count : {3, 4}) {
+  for (const std::size_t count : {3U, 4U}) {
     RecordingIndex index = make_file().index;
     index.truncate(count);
     if (count == 4) shorter.description("{\"epoch\":2}").frame(true);

@@ -10,16 +10,16 @@
 namespace vat::test::admission_race_test {
 namespace {
 
-constexpr int kAsking = 16;
+constexpr std::size_t kAsking = 16;
 constexpr std::size_t kPlaces = 3;
 constexpr int kRounds = 20;
 
 /// Calls `ask(i)` for each i below kAsking simultaneously, each on its own thread.
 template <class Ask>
 void all_at_once(Ask&& ask) {
-  std::barrier start(kAsking);
+  std::barrier start(static_cast<std::ptrdiff_t>(kAsking));
   std::vector<std::jthread> threads;
-  for (int i = 0; i < kAsking; ++i) {
+  for (std::size_t i = 0; i < kAsking; ++i) {
     threads.emplace_back([&, i] {
       start.arrive_and_wait();
       ask(i);
@@ -32,22 +32,24 @@ class AdmissionRace : public testing::Test {
   AdmissionRace() { limits.max_sessions_per_address = limits.max_sessions = 100; }
 
   /// Starts a server with one session, `s1`, and connects clients.
-  void serve(int clients_to_connect = kAsking) {
+  void serve(std::size_t clients_to_connect = kAsking) {
     ServerSettings settings = test_settings(limits);
     settings.threads = 4;
     server = std::make_unique<TestServer>(catalogue, settings);
     EXPECT_TRUE(server->create_session("first", to_scene(mixed_scene_text())).ok());
-    for (int i = 0; i < clients_to_connect; ++i) {
-      clients.push_back(std::make_unique<TestClient>(*server, i + 1));
-    }
+    clients.resize(clients_to_connect);
+    for (std::size_t i = 0; i < clients_to_connect; ++i) connect(i);
+  }
+  void connect(std::size_t i) {
+    clients[i] = std::make_unique<TestClient>(*server, static_cast<int>(i) + 1);
   }
   /// Returns the results of the clients that get one. The others must get an error with this limit.
-  std::map<int, Json> admitted(const char* method, const Json& params, const std::string& limit,
-                               std::size_t maximum = kPlaces) {
+  std::map<std::size_t, Json> admitted(const char* method, const Json& params,
+                                       const std::string& limit, std::size_t maximum = kPlaces) {
     std::vector<Json> replies(kAsking);
-    all_at_once([&](int i) { replies[i] = clients[i]->call(method, params); });
-    std::map<int, Json> results;
-    for (int i = 0; i < kAsking; ++i) {
+    all_at_once([&](std::size_t i) { replies[i] = clients[i]->call(method, params); });
+    std::map<std::size_t, Json> results;
+    for (std::size_t i = 0; i < kAsking; ++i) {
       if (replies[i].contains("result")) {
         results[i] = replies[i].at("result");
       } else {
@@ -80,7 +82,7 @@ TEST_F(AdmissionRace, ForTheLastConnections) {
   serve(0);
   for (int round = 0; round < kRounds; ++round) {
     clients.resize(kAsking);
-    all_at_once([&](int i) { clients[i] = std::make_unique<TestClient>(*server, i + 1); });
+    all_at_once([&](std::size_t i) { connect(i); });
     EXPECT_EQ(std::ranges::count_if(
                   clients, [](const auto& client) { return !client->connection->close_code(); }),
               kPlaces);
@@ -133,7 +135,7 @@ class TransportRace : public testing::Test {
     const std::uint16_t port = transport->start();
     std::vector<std::unique_ptr<WsClient>> clients(kAsking);
     std::atomic<std::size_t> count = 0;
-    all_at_once([&](int i) {
+    all_at_once([&](std::size_t i) {
       try {
         clients[i] = std::make_unique<WsClient>(port);
         clients[i]->send_text("here");

@@ -39,7 +39,7 @@ class QueueLimit : public testing::Test {
 };
 
 TEST_F(QueueLimit, ClosesTheLongestQueuesBeyondTheLimit) {
-  for (const std::size_t bytes : {1000, 5000, 2000}) add().send(make_json_text(bytes));
+  for (const std::size_t bytes : {1000U, 5000U, 2000U}) add().send(make_json_text(bytes));
   const std::size_t all = 8000 + 3 * kCost;
   EXPECT_EQ(clients.queue_bytes(), all);
   EXPECT_EQ(clients.bound_queues(all), 0U) << "at the limit";

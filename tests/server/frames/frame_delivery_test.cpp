@@ -109,7 +109,7 @@ TEST_F(FrameDeliveryTest, AViewerGetsTheTicksThatItAskedFor) {
 // A newer state may have replaced the state of the divisible tick.
 TEST_F(FrameDeliveryTest, ASkippedTurnIsServedWithTheNextState) {
   const TestViewer third = add(every(3));
-  for (const std::uint64_t tick : {1, 2, 4, 5, 7, 8}) {
+  for (const std::uint64_t tick : {1U, 2U, 4U, 5U, 7U, 8U}) {
     publish(tick);
     acknowledge_all(third);
   }

@@ -85,7 +85,7 @@ TEST_F(RecordingFileTest, IsUnderAPartialNameUntilItIsFinished) {
 }
 
 TEST_F(RecordingFileTest, CopyOfAPartEqualsAShorterRecording) {
-  for (const std::size_t count : {1, 4, 7}) {
+  for (const std::size_t count : {1U, 4U, 7U}) {
     const std::string expected = write(count);
     write(7);
     Result<RecordingFile> file = RecordingFile::open(name);

@@ -95,7 +95,7 @@ TEST_F(ReplaySession, UnpacksNoMoreThanASessionMayBe) {
     return bob_->wait_event("replay.diverged").at("reason");
   };
   bob_.emplace(server_, 2);
-  for (const std::uint32_t more : {0, 1}) {
+  for (const std::uint32_t more : {0U, 1U}) {
     Recording recording = record();
     recording.moments.back().state = bytes_that_say(static_cast<std::uint32_t>(most) + more);
     const std::string told = reason(recording);

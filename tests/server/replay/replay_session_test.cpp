@@ -109,7 +109,7 @@ TEST_F(ReplaySession, BeginsAnEpochWithEverySeek) {
   bob_->result("frames.subscribe");
   const auto epoch = [&] { return joined_.at("description").at("epoch").get<std::uint32_t>(); };
   std::uint32_t last = epoch();
-  for (const std::uint64_t at : {8, 2, 20, 0}) {
+  for (const std::uint64_t at : {8U, 2U, 20U, 0U}) {
     bob_->mark();
     seek(first_ + at);
     const std::uint32_t next = bob_->wait_event("session.description").at("epoch");

@@ -143,13 +143,13 @@ TEST_F(SessionDurability, SettingsThatCannotBeStoredDoNotChange) {
 
 // More sessions wait for the disk than the server has threads for sessions.
 TEST_F(SessionDurability, WhileTheDiskIsBlockedOtherSessionsContinue) {
-  constexpr int kBusySessions = 6;
+  constexpr std::size_t kBusySessions = 6;
   TestServer& server = host->server;
   const Json scene = Json::parse(mixed_scene_text());
   std::vector<std::unique_ptr<TestClient>> busy;
   std::vector<std::string> ids;
-  for (int i = 0; i < kBusySessions; ++i) {
-    busy.push_back(std::make_unique<TestClient>(server, 10 + i));
+  for (std::size_t i = 0; i < kBusySessions; ++i) {
+    busy.push_back(std::make_unique<TestClient>(server, 10 + static_cast<int>(i)));
     ids.push_back(busy[i]->create_session(scene, "busy"));
     busy[i]->result("session.join", {{"session", ids[i]}});
     busy[i]->result("control.pause");
@@ -163,7 +163,7 @@ TEST_F(SessionDurability, WhileTheDiskIsBlockedOtherSessionsContinue) {
   const auto send = [&](TestClient& to, std::string_view method, const Json& params) {
     waiting.emplace_back(&to, to.send(method, params));
   };
-  for (int i = 0; i < kBusySessions; ++i) {
+  for (std::size_t i = 0; i < kBusySessions; ++i) {
     TestClient& one = *busy[i];
     if (i % 2 == 0) send(one, "session.invite", {{"role", "viewer"}});
     send(one, "session.save", {{"name", "b"}});

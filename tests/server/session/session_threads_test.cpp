@@ -55,7 +55,7 @@ class SessionThreads : public testing::Test {
   }
   static std::string expected_hash(int ticks = kTicks) {
     Simulation alone = Simulation::create(pool_scene()).value();
-    advance_ticks(alone, ticks);
+    advance_ticks(alone, static_cast<std::uint64_t>(ticks));
     return hash_of(alone);
   }
 

@@ -39,7 +39,7 @@ std::string close_frame(int code, const std::string& reason = "") {
 
 // Group 1: text and binary frames of every size, and the bounds of the three length formats.
 TEST_F(WebSocketConformance, Framing) {
-  for (const std::size_t size : {0, 1, 125, 126, 127, 128, 65535, 65536, 1000000}) {
+  for (const std::size_t size : {0U, 1U, 125U, 126U, 127U, 128U, 65535U, 65536U, 1000000U}) {
     for (const int opcode : {kText, kBinary}) {
       EXPECT_EQ(echoed(client_frame(opcode, std::string(size, '*'))), std::string(size, '*'));
     }

@@ -85,7 +85,7 @@ TEST_F(TransportHostileTest, AHandshakeThatNeverEndsIsCutOff) {
 TEST_F(TransportHostileTest, APeerThatDropsInTheMiddleOfAMessage) {
   start();
   const std::string frame = client_frame(1, std::string(1000, 'x'));
-  for (const std::size_t size : {1, 3, 7, 500}) {
+  for (const std::size_t size : {1U, 3U, 7U, 500U}) {
     WsClient client(port);
     client.raw().write(frame.substr(0, size));
     if (size % 2 == 1) {

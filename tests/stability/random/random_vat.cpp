@@ -80,8 +80,8 @@ std::string random_text_of(const GuardEvent& event, bool failed) {
 
 Real greatest_speed(const Simulation& simulation) {
   Real speed2 = 0;
-  for (const Vec3& v : simulation.bodies()[0].velocities)
-    speed2 = std::max(speed2, v.squaredNorm());
+  const BodyView body = simulation.bodies()[0];
+  for (const Vec3& v : body.velocities) speed2 = std::max(speed2, v.squaredNorm());
   return std::sqrt(speed2);
 }
 

@@ -71,7 +71,8 @@ ParticleShape wave_of(const Scene& scene, const TwoLayers& layers, std::size_t b
   const Real surface = interface + pressed_height(layers.depth_above, 0, c2_above);
   const Run run(scene);
   ParticleShape shape;
-  for (Vec3 x : run.simulation().bodies()[body].positions) {
+  const BodyView layer = run.simulation().bodies()[body];
+  for (Vec3 x : layer.positions) {
     shape.velocities.push_back(std::sqrt(layers.omega2()) * layers.displacement(x));
     const Real below_interface = layers.depth_below - x.z();
     x.z() = below_interface > 0

@@ -52,8 +52,8 @@ void add_beam_rows(Sheet& sheet) {
       if (!published.at(0).is_number()) continue;  // more than one iteration
       const Real step = 0.5 / std::round(0.5 / published.at(0).get<Real>());
       Run run = sheet.start(with_step(scene, step));
-      for (const int half : {1, 2}) {
-        run.advance_to(0.5 * half);
+      for (const std::size_t half : {1U, 2U}) {
+        run.advance_to(half == 1 ? 0.5 : 1);
         const Real exact = reference(beam + (half == 1 ? "0.5" : "1.0"));
         sheet.add("error of tip z(" + std::string(half == 1 ? "0.5" : "1") + ") [m], step " +
                       published.at(0).dump() + ", beside " + method,
