@@ -7,6 +7,7 @@
 #include <random>
 
 #include "core/liquid/gas/liquid.h"
+#include "tests/core/support/distance.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/mixed_scenes.h"
 
@@ -59,6 +60,11 @@ Found in_list(const Moved& moved, Index i, Real slack) {
   return found;
 }
 
+Real distance_in(const PeriodicBox& box, const Vec3& a, const Vec3& b) {
+  if (!box.any()) return distance_between(a, b);
+  return box.nearest(Vec3(box.wrap(a) - box.wrap(b))).norm();
+}
+
 Found by_brute_force(const Moved& moved, Index i, Real slack) {
   const Model& model = moved.probe.model();
   const std::vector<Vec3>& at = moved.probe.state().now.position;
@@ -69,9 +75,8 @@ Found by_brute_force(const Moved& moved, Index i, Real slack) {
     Contact contact;
     if (is_liquid(i) && is_liquid(j) && model.material[i] == model.material[j]) continue;
     if (!rules.find_law(j, contact) || rules.excluded(j)) continue;
-    const Vec3 x =
-        model.periodic.nearest(Vec3(model.periodic.wrap(at[i]) - model.periodic.wrap(at[j])));
-    if (x.norm() < contact.threshold + slack) found.emplace_back(j, x.norm());
+    const Real distance = distance_in(model.periodic, at[i], at[j]);
+    if (distance < contact.threshold + slack) found.emplace_back(j, distance);
   }
   std::stable_partition(found.begin(), found.end(),
                         [&](const auto& pair) { return model.body[pair.first] != model.body[i]; });

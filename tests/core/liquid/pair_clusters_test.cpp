@@ -7,6 +7,7 @@
 #include <random>
 #include <vector>
 
+#include "tests/core/support/distance.h"
 #include "tests/support/thread_runner.h"
 
 // Clusters of targets and their candidates, compared with a search over all pairs.
@@ -97,7 +98,7 @@ void expect_all_pairs(const Cloud& cloud, Real reach, InstructionSet set, TaskRu
       for (Index i = cluster.begin; i < cluster.end; ++i) {
         ++seen[i];
         for (Index j = 0; j < cloud.places.size(); ++j) {
-          if ((cloud.places[i] - cloud.places[j]).norm() >= reach) continue;
+          if (distance_between(cloud.places[i], cloud.places[j]) >= reach) continue;
           EXPECT_TRUE(std::ranges::binary_search(candidates, j)) << i << " and " << j;
         }
       }

@@ -7,6 +7,7 @@
 
 #include "core/model/compile.h"
 #include "core/validation/validate.h"
+#include "tests/core/support/distance.h"
 #include "tests/support/errors.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/same_bits.h"
@@ -36,8 +37,8 @@ Real greatest_strain(const Scene& scene, const Simulation& simulation) {
   const auto now = simulation.bodies()[0].positions;
   Real greatest = 0;
   for (const SpringDescription& s : scene.bodies[0].springs) {
-    greatest =
-        std::max(greatest, (now[s.a] - now[s.b]).norm() / (start[s.a] - start[s.b]).norm() - 1);
+    const Real length = distance_between(now[s.a], now[s.b]);
+    greatest = std::max(greatest, length / distance_between(start[s.a], start[s.b]) - 1);
   }
   return greatest;
 }
