@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/simulation/simulation.h"
+#include "tests/support/distance.h"
 
 /// Small scenes as values. Bodies consist of explicit particles, so that tests of the core do not
 /// depend on the sampler.
@@ -82,7 +83,7 @@ inline std::vector<SpringDescription> join_near(const std::vector<Vec3>& points,
   std::vector<SpringDescription> springs;
   for (Index a = 0; a < points.size(); ++a) {
     for (Index b = a + 1; b < points.size(); ++b) {
-      if ((points[a] - points[b]).norm() < reach) springs.push_back({a, b, constants, {}});
+      if (distance_between(points[a], points[b]) < reach) springs.push_back({a, b, constants, {}});
     }
   }
   return springs;

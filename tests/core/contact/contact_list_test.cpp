@@ -7,7 +7,7 @@
 #include <random>
 
 #include "core/liquid/gas/liquid.h"
-#include "tests/core/support/distance.h"
+#include "tests/support/distance.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/mixed_scenes.h"
 

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "tests/core/support/distance.h"
+#include "tests/support/distance.h"
 #include "tests/support/thread_runner.h"
 
 // Clusters of targets and their candidates, compared with a search over all pairs.

@@ -1,5 +1,5 @@
 #include "core/neighbours/uniform_grid.h"
-#include "tests/core/support/distance.h"
+#include "tests/support/distance.h"
 
 #include <gtest/gtest.h>
 

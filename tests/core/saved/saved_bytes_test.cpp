@@ -4,8 +4,8 @@
 
 #include "core/saved/sealed_bytes.h"
 #include "core/support/byte_io.h"
+#include "tests/core/support/resting_scenes.h"
 #include "tests/support/errors.h"
-#include "tests/support/resting_scenes.h"
 #include "tests/support/shaken_vat.h"
 
 // The reader of saved simulations rejects every input that is not a saved snapshot, and names the

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "tests/core/support/resting_scenes.h"
 #include "tests/support/mixed_scenes.h"
-#include "tests/support/resting_scenes.h"
 #include "tests/support/saved_bits.h"
 #include "tests/support/shaken_vat.h"
 

@@ -5,9 +5,9 @@
 #include <memory>
 #include <vector>
 
+#include "tests/core/support/resting_scenes.h"
 #include "tests/support/edited_scene.h"
 #include "tests/support/mixed_scenes.h"
-#include "tests/support/resting_scenes.h"
 
 namespace vat::test::views_test {
 namespace {

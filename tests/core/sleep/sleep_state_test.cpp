@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "tests/core/support/resting_scenes.h"
 #include "tests/support/memory/allocation_counter.h"
-#include "tests/support/resting_scenes.h"
 #include "tests/support/same_bits.h"
 
 // Sleep as part of the state.

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "tests/support/resting_scenes.h"
+#include "tests/core/support/resting_scenes.h"
 
 // Conditions for sleep.
 

@@ -5,8 +5,8 @@
 #include "core/laws/vat_motion.h"
 #include "core/sleep/resting_bodies.h"
 #include "core/state/body_state.h"
+#include "tests/core/support/resting_scenes.h"
 #include "tests/support/force_probe.h"
-#include "tests/support/resting_scenes.h"
 
 // The columns of a subset of a model's bodies.
 

@@ -2,8 +2,8 @@
 
 #include <functional>
 
+#include "tests/core/support/resting_scenes.h"
 #include "tests/support/commands.h"
-#include "tests/support/resting_scenes.h"
 
 // Events that wake sleeping bodies.
 

@@ -7,7 +7,7 @@
 
 #include "core/model/compile.h"
 #include "core/validation/validate.h"
-#include "tests/core/support/distance.h"
+#include "tests/support/distance.h"
 #include "tests/support/errors.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/same_bits.h"
