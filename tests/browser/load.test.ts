@@ -91,16 +91,23 @@ it('does nothing once per particle on the page thread, and uploads no more than 
   await viewer.until('#view[data-tick]');
   const drawn = (count: number): Promise<unknown> =>
     page.waitForFunction((least) => window.pictures.length >= least, count);
-  await drawn(1);
-  await visits.untilWhole();
-  await page.coverage.startJSCoverage({ resetOnNavigation: false });
-  await page.evaluate(() => (window.pictures = []));
-  // If a page draws too slowly while a session plays, the server sends fewer particles.
-  for (let step = 0; step < kPictures; ++step) {
+  const step = async (): Promise<void> => {
     const tick = await viewer.tick();
     await observer.request('control.step', { ticks: 1 });
     await viewer.untilTick(tick + 1);
-    await drawn(step + 1);
+  };
+  await drawn(1);
+  await visits.untilWhole();
+  // If a page draws too slowly while a session plays, the server sends fewer particles. The first
+  // picture with all particles then enlarges the buffers.
+  await page.evaluate(() => (window.pictures = []));
+  await step();
+  await drawn(1);
+  await page.coverage.startJSCoverage({ resetOnNavigation: false });
+  await page.evaluate(() => (window.pictures = []));
+  for (let count = 1; count <= kPictures; ++count) {
+    await step();
+    await drawn(count);
   }
   const coverage = await page.coverage.stopJSCoverage();
   const pictures = await page.evaluate(() => window.pictures);
