@@ -134,8 +134,9 @@ TEST_F(SessionReadsTest, OfAllClientsHaveABudgetToo) {
     add(reads, readers.back(), std::to_string(i), 900);
   }
   run_all(reads);
-  for (std::size_t i = 0; i < 3; ++i)
+  for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_TRUE(readers[i].connection->texts().at(0).contains("result"));
+  }
   const Json error = readers[3].connection->texts().at(0).at("error");
   EXPECT_EQ(error.at("data").at("limit"), "session_read_bytes_per_second");
 }
