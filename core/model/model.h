@@ -148,7 +148,7 @@ struct RigidModel {
 /// Velocity-dependent forces of a model.
 struct ModelDamping {
   bool any = false;
-  std::vector<Oscillation> own;  ///< by body: damping of its springs or its liquid
+  std::vector<Oscillation> own;         ///< by body: damping of its springs or its liquid
   std::vector<Oscillation> by_liquids;  ///< by solid body: by the forces of liquids on it
   /// False if gravity, and therefore the weight of liquids, has changed since `own` was computed.
   bool is_current = true;

@@ -7,7 +7,8 @@
 namespace vat {
 
 /// Runs independent blocks of work. run() calls `block(0) … block(n-1)`, each exactly once, in any
-/// order and from any thread. run() returns when all calls have ended. ThreadPoolRunner has threads.
+/// order and from any thread. run() returns when all calls have ended. ThreadPoolRunner has
+/// threads.
 class TaskRunner {
  public:
   virtual ~TaskRunner() = default;

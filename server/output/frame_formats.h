@@ -36,8 +36,8 @@ Result<std::unique_ptr<FrameWriter>> create_npz_writer(const std::string& name,
 /// translation and rotation are animated. The particles of liquids and deformable bodies are points
 /// with one mesh for each of at most 120 key frames, and at most 20 million points in all. With
 /// liquid surfaces, the key frames contain the surface of each liquid material instead of its
-/// particles. Colours are those of the materials. The writer keeps the content in memory until finish(). Creates the
-/// file, and returns an error if the creation fails.
+/// particles. Colours are those of the materials. The writer keeps the content in memory until
+/// finish(). Creates the file, and returns an error if the creation fails.
 Result<std::unique_ptr<FrameWriter>> create_glb_writer(const std::string& name,
                                                        const FrameContent& content);
 

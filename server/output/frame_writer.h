@@ -23,7 +23,7 @@ class FrameWriter {
 
 /// Content of an output.
 struct FrameContent {
-  std::size_t frame_count = 1;      ///< number of output times
+  std::size_t frame_count = 1;       ///< number of output times
   bool has_liquid_surfaces = false;  ///< only for formats with surfaces, see can_have_surfaces()
 };
 

@@ -66,11 +66,11 @@ std::optional<HttpRefusal> WsEndpoint::refuse_request(WsStream& stream) {
 bool WsEndpoint::validate(WsStream& stream) {
   std::optional<HttpRefusal> refusal = refuse_request(stream);
   if (!refusal) {
-    refusal = refuse_upgrade(
-        {stream.get_request().get_uri(), stream.get_request_header("Host"),
-         stream.get_request_header("Origin"), stream.get_request().websocket_version,
-         stream.get_requested_subprotocols()},
-        shared_.settings.allowed_origins);
+    refusal =
+        refuse_upgrade({stream.get_request().get_uri(), stream.get_request_header("Host"),
+                        stream.get_request_header("Origin"), stream.get_request().websocket_version,
+                        stream.get_requested_subprotocols()},
+                       shared_.settings.allowed_origins);
   }
   if (!refusal) {
     stream.select_subprotocol(kSubprotocol);

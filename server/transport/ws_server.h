@@ -35,8 +35,8 @@ struct WsPeer {
 };
 
 /// HTTP request that counts the bytes received after its end. The library handles every upgrade as
-/// RFC 6455, and refuse_upgrade() decides on the version that the client sent. Otherwise the library
-/// would answer requests of the drafts before the RFC with status 500.
+/// RFC 6455, and refuse_upgrade() decides on the version that the client sent. Otherwise the
+/// library would answer requests of the drafts before the RFC with status 500.
 struct WsRequest : websocketpp::http::parser::request {
   std::size_t consume(const char* bytes, std::size_t size) {
     const std::size_t used = websocketpp::http::parser::request::consume(bytes, size);

@@ -245,7 +245,7 @@ class AbcWriter final : public FrameWriter {
   }
 
   AbcArchive archive_;
-  std::vector<AbcObject*> objects_;  ///< by the indices of the bodies
+  std::vector<AbcObject*> objects_;                          ///< by the indices of the bodies
   std::map<std::string, AbcObject*, std::less<>> surfaces_;  ///< by the names of materials
   std::set<std::string> names_;
   bool has_surfaces_;
@@ -258,7 +258,8 @@ Result<std::unique_ptr<FrameWriter>> create_abc_writer(const std::string& name,
                                                        bool has_liquid_surfaces) {
   Result<OgawaFile> file = OgawaFile::create(name);
   if (!file) return file.errors();
-  return std::unique_ptr<FrameWriter>(std::make_unique<AbcWriter>(std::move(file).value(), has_liquid_surfaces));
+  return std::unique_ptr<FrameWriter>(
+      std::make_unique<AbcWriter>(std::move(file).value(), has_liquid_surfaces));
 }
 
 }  // namespace vat

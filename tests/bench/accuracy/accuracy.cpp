@@ -6,8 +6,8 @@
 #include <iterator>
 #include <memory>
 
-#include "server/cli/common/command.h"
 #include "core/threads/thread_pool.h"
+#include "server/cli/common/command.h"
 #include "tests/bench/accuracy/accuracy_report.h"
 #include "tests/bench/accuracy/catalogue_report.h"
 #include "tests/bench/accuracy/control_report.h"

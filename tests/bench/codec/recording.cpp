@@ -3,9 +3,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/threads/thread_pool.h"
 #include "protocol/scene/scene_json.h"
 #include "server/cli/common/scene_argument.h"
-#include "core/threads/thread_pool.h"
 #include "tests/bench/speed/scenes.h"
 
 namespace vat::bench {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "server/cli/common/command.h"
 #include "core/threads/thread_pool.h"
+#include "server/cli/common/command.h"
 #include "tests/bench/options.h"
 #include "tests/bench/report/table.h"
 #include "tests/bench/validate/validate_table.h"
