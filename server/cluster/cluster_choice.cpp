@@ -99,11 +99,9 @@ bool ClusterNode::is_my_turn(const LocatedSession& entry, SteadyClock::duration 
   const Result<InstructionSet> needed = parse_instruction_set(entry.instruction_set);
   if (!needed || !check_available(needed.value())) return false;
   if (!nodes_.is_seen_within(name(), kFresh)) return false;
-  const std::size_t before =
-      nodes_.count_before(name(), entry.number, kFresh, [&](const NodeInfo& node) {
-        const Result<InstructionSet> has = parse_instruction_set(node.instruction_set);
-        return has && has.value() >= needed.value();
-      });
+  const std::size_t before = nodes_.count_before(
+      name(), entry.number, kFresh,
+      [&](const NodeInfo& node) { return has_instructions(node, entry.instruction_set); });
   return orphaned >= static_cast<int>(before) * kOrphanTurn;
 }
 

@@ -52,6 +52,8 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   std::shared_ptr<SessionReplica> replica_of(std::uint64_t session) override;
 
   const std::string& name() const { return settings_.node; }
+  /// Returns false if another process has the node's name. This process then serves no session.
+  bool has_name() const { return has_name_; }
   /// Returns a text that differs from that of all other runs of a node.
   const std::string& instance() const { return instance_; }
   const std::string& public_url() const { return settings_.public_url; }
@@ -90,10 +92,17 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   /// Asks another node to create a session. Waits. Returns its answer. Throws NatsError.
   std::string create_at(const std::string& node, const std::string& request);
 
-  /// Hands a session over to another node, and then calls `done` with the URL of that node.
-  /// Returns false if the node does not own the session, or the other node is not present.
-  bool move(std::uint64_t session, const std::string& node,
-            std::function<void(const std::string& url)> done);
+  enum class MoveRefusal {
+    not_owned,           ///< the node does not own the session
+    not_present,         ///< the other node takes no sessions
+    lacks_instructions,  ///< the other node lacks the instruction set of the session
+    is_moving,           ///< the session is being handed over to another node than the named one
+  };
+  using Moved = std::function<void(const std::optional<std::string>& url)>;
+  /// Hands a session over to another node. Then calls `done` with the URL of that node, or with
+  /// nothing if the directory could not be changed. Returns a reason against the hand-over, if
+  /// there is one.
+  std::optional<MoveRefusal> move(std::uint64_t session, const std::string& node, Moved done);
   /// Hands all sessions over to other nodes. Returns after `time`, or when all are stored.
   void drain(std::chrono::milliseconds time);
 
@@ -101,6 +110,11 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   struct Hosted {
     std::shared_ptr<SessionStream> stream;
     LocatedSession entry;
+  };
+  /// Hand-over that has begun.
+  struct Move {
+    std::string successor;
+    std::vector<Moved> waiting;
   };
   using Time = SteadyClock::time_point;
   static constexpr std::chrono::milliseconds kFresh = 3 * Lease::kRenewal;
@@ -133,8 +147,11 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   void lose(std::uint64_t session);
   /// Returns false if the session is not hosted.
   bool forget(std::uint64_t session);
-  void release(std::uint64_t session, const std::string& successor,
-               const std::function<void(const std::string&)>& done);
+  void release(std::uint64_t session, const std::string& successor);
+  /// Calls the functions that wait for the hand-over of the session.
+  void end_move(std::uint64_t session, const std::optional<std::string>& url);
+  /// Calls `done` after a hand-over that has begun. Returns false if there is none.
+  bool wait_for_move(std::uint64_t session, const Moved& done);
   /// Changes the entry of a hosted session. Throws NatsError if the session is lost.
   LocatedSession update(std::uint64_t session,
                         const std::function<LocatedSession(const LocatedSession&)>& change);
@@ -175,7 +192,8 @@ class ClusterNode final : public SessionReplicas, public SendGate {
 
   mutable std::mutex mutex_;  // guards the members below
   std::map<std::uint64_t, Hosted> hosted_;
-  std::set<std::uint64_t> reserved_;      // sessions that are being created, taken or moved
+  std::set<std::uint64_t> reserved_;  // sessions that are being created, taken or moved
+  std::map<std::uint64_t, Move> moves_;
   std::map<std::uint64_t, Time> failed_;  // times at which a take-over failed
   std::map<std::uint64_t, Time> orphans_;
 

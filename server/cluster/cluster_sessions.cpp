@@ -211,34 +211,70 @@ void ClusterNode::reserve(std::uint64_t session, bool is_reserved) {
   }
 }
 
-bool ClusterNode::move(std::uint64_t session, const std::string& node,
-                       std::function<void(const std::string& url)> done) {
-  if (!find_hosted(session) || node == name()) return false;
-  if (!nodes_.is_seen_within(node, Lease::kHolderTime)) return false;
-  reserve(session, true);
-  const bool has_begun =
-      host_->stop_for_move(session, [this, session, node, done = std::move(done)] {
-        post([this, session, node, done] { release(session, node, done); });
-      });
-  if (!has_begun) reserve(session, false);
-  return has_begun;
+std::optional<ClusterNode::MoveRefusal> ClusterNode::move(std::uint64_t session,
+                                                          const std::string& node, Moved done) {
+  const auto info = nodes_.find(node);
+  {
+    const std::lock_guard lock(mutex_);
+    const auto hosted = hosted_.find(session);
+    if (hosted == hosted_.end()) return MoveRefusal::not_owned;
+    if (node == name() || !info || !info->accepts ||
+        !nodes_.is_seen_within(node, Lease::kHolderTime)) {
+      return MoveRefusal::not_present;
+    }
+    if (!has_instructions(*info, hosted->second.entry.instruction_set)) {
+      return MoveRefusal::lacks_instructions;
+    }
+    const auto [move, is_new] = moves_.try_emplace(session, Move{node, {}});
+    if (!is_new && move->second.successor != node) return MoveRefusal::is_moving;
+    move->second.waiting.push_back(std::move(done));
+    if (!is_new) return {};
+    reserved_.insert(session);
+  }
+  const bool has_begun = host_->stop_for_move(
+      session, [this, session, node] { post([this, session, node] { release(session, node); }); });
+  if (!has_begun) {
+    reserve(session, false);
+    end_move(session, {});
+  }
+  return {};
 }
 
-void ClusterNode::release(std::uint64_t session, const std::string& successor,
-                          const std::function<void(const std::string&)>& done) {
+void ClusterNode::release(std::uint64_t session, const std::string& successor) {
+  std::optional<std::string> url;
   try {
     update(session,
            [&](const LocatedSession& entry) { return locator_.release(entry, successor); });
+    const auto node = nodes_.find(successor);
+    url = node ? node->url : std::string();
+    log_info("session {} is handed over to {}", id_of_session(session), successor);
   } catch (const NatsError& error) {
     log_warning("session {} is not released: {}", id_of_session(session), error.what());
   }
+  // Without a release, this node takes the session again from its last state.
   forget(session);
   reserve(session, false);
-  const auto node = nodes_.find(successor);
-  log_info("session {} is handed over to {}", id_of_session(session), successor);
-  const std::string url = node ? node->url : std::string();
-  host_->end_lost(session, url);
-  done(url);
+  host_->end_lost(session, url.value_or(""));
+  end_move(session, url);
+}
+
+void ClusterNode::end_move(std::uint64_t session, const std::optional<std::string>& url) {
+  std::vector<Moved> waiting;
+  {
+    const std::lock_guard lock(mutex_);
+    auto found = moves_.extract(session);
+    VAT_CHECK(!found.empty());
+    waiting = std::move(found.mapped().waiting);
+  }
+  for (const Moved& done : waiting) done(url);
+}
+
+bool ClusterNode::wait_for_move(std::uint64_t session, const Moved& done) {
+  const std::lock_guard lock(mutex_);
+  const auto found = moves_.find(session);
+  if (found == moves_.end()) return false;
+  found->second.waiting.push_back(done);
+  return true;
 }
 
 void ClusterNode::drain(std::chrono::milliseconds time) {
@@ -249,28 +285,30 @@ void ClusterNode::drain(std::chrono::milliseconds time) {
     std::size_t count = 0;
   };
   const auto left = std::make_shared<Left>();
-  std::vector<std::uint64_t> numbers;
+  const auto end = [left](const auto&) {
+    const std::lock_guard lock(left->mutex);
+    --left->count;
+    left->changed.notify_all();
+  };
+  std::map<std::uint64_t, std::string> sessions;  // with their instruction sets
   {
     const std::lock_guard lock(mutex_);
-    for (const auto& [number, hosted] : hosted_) numbers.push_back(number);
+    for (const auto& [number, hosted] : hosted_) sessions[number] = hosted.entry.instruction_set;
   }
-  for (const std::uint64_t number : numbers) {
+  for (const auto& [number, instruction_set] : sessions) {
     std::vector<std::string> names;
     for (const NodeInfo& node : nodes_.seen_within(Lease::kHolderTime)) {
-      if (node.accepts && node.name != name()) names.push_back(node.name);
+      const bool can_take = node.accepts && has_instructions(node, instruction_set);
+      if (can_take && node.name != name()) names.push_back(node.name);
     }
     names = rank_nodes(number, std::move(names));
-    if (names.empty()) continue;
     {
       const std::lock_guard lock(left->mutex);
       ++left->count;
     }
-    const auto end = [left] {
-      const std::lock_guard lock(left->mutex);
-      --left->count;
-      left->changed.notify_all();
-    };
-    if (!move(number, names.front(), [end](const std::string&) { end(); })) end();
+    const bool waits =
+        wait_for_move(number, end) || (!names.empty() && !move(number, names.front(), end));
+    if (!waits) end(0);
   }
   std::unique_lock lock(left->mutex);
   left->changed.wait_for(lock, time, [&] { return left->count == 0; });

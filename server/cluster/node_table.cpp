@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/support/instruction_set.h"
 #include "protocol/json/json_reader.h"
 
 namespace vat {
@@ -32,6 +33,12 @@ std::string write_node(const NodeInfo& node) {
               {"version", node.version}, {"room", node.room},
               {"accepts", node.accepts}}
       .dump();
+}
+
+bool has_instructions(const NodeInfo& node, const std::string& instruction_set) {
+  const Result<InstructionSet> has = parse_instruction_set(node.instruction_set);
+  const Result<InstructionSet> needed = parse_instruction_set(instruction_set);
+  return has && needed && has.value() >= needed.value();
 }
 
 std::optional<NodeInfo> read_node(const std::string& name, const std::string& text) {

@@ -25,6 +25,8 @@ struct NodeInfo {
 };
 
 std::string write_node(const NodeInfo& node);
+/// Returns whether the machine of the node has this instruction set.
+bool has_instructions(const NodeInfo& node, const std::string& instruction_set);
 /// Returns nothing if the text is invalid, or describes another node than `name`.
 std::optional<NodeInfo> read_node(const std::string& name, const std::string& text);
 

@@ -56,6 +56,8 @@ class SessionDirectory : private ClusterHost {
   std::size_t recover();
   /// Returns false during the recovery of sessions and after drain().
   bool is_ready() const;
+  /// Returns whether another process is now this node of the cluster.
+  bool is_replaced() const;
 
   /// Creates a session. May wait for the disk.
   std::variant<SessionId, RpcError> create(std::string name, const Scene& scene,

@@ -36,6 +36,10 @@ std::size_t SessionDirectory::recover() {
   return resources_.cluster->start(*this);
 }
 
+bool SessionDirectory::is_replaced() const {
+  return resources_.cluster != nullptr && !resources_.cluster->has_name();
+}
+
 void SessionDirectory::start_taken(const StoredSession& session) {
   recoverer_.start(session);
 }
@@ -268,16 +272,30 @@ std::optional<RpcError> SessionDirectory::move(PendingReply& reply, const Sessio
   if (resources_.cluster == nullptr) return not_allowed("the server is no node of a cluster");
   const auto number = number_of(id);
   const auto waiting = std::make_shared<PendingReply>(std::move(reply));
-  const auto answer = [waiting, id](const std::string& url) {
-    waiting->answer(Json{{"session", id}, {"url", url}});
+  const auto answer = [waiting, id](const std::optional<std::string>& url) {
+    if (!url) return waiting->answer(not_recovered(id, "recovering"));
+    waiting->answer(Json{{"session", id}, {"url", *url}});
   };
-  if (number && resources_.cluster->move(*number, node, answer)) return {};
+  using Refusal = ClusterNode::MoveRefusal;
+  const auto refusal =
+      number ? resources_.cluster->move(*number, node, answer) : std::optional(Refusal::not_owned);
+  if (!refusal) return {};
   reply = std::move(*waiting);
+  switch (*refusal) {
+    case Refusal::not_present:
+      return invalid_params({Error{"bad_value", "/node", "must be another running node"}});
+    case Refusal::lacks_instructions:
+      return invalid_params(
+          {Error{"bad_value", "/node", "must be a node that has the session's instruction set"}});
+    case Refusal::is_moving:
+      return invalid_params(
+          {Error{"bad_value", "/node", "must be the node to which the session is moving"}});
+    case Refusal::not_owned:
+      break;
+  }
   const auto elsewhere = number ? resources_.cluster->find(*number) : std::nullopt;
   if (!elsewhere) return no_such_session(id, "/session");
-  if (elsewhere->owner == resources_.cluster->name()) {
-    return invalid_params({Error{"bad_value", "/node", "must be another running node"}});
-  }
+  if (elsewhere->owner == resources_.cluster->name()) return not_recovered(id, "recovering");
   return moved_to(id, resources_.cluster->url_of(*elsewhere).value_or(""));
 }
 

@@ -132,7 +132,7 @@ std::string SessionDirectory::metrics() {
 }
 
 Json SessionDirectory::health() const {
-  Json health{{"status", "ok"}, {"durability", "none"}};
+  Json health{{"status", is_replaced() ? "replaced" : "ok"}, {"durability", "none"}};
   if (resources_.storage == nullptr) return health;
   health["durability"] = to_string(resources_.settings.storage.durability);
   const auto failing = resources_.storage->counts().failing;

@@ -106,7 +106,10 @@ HttpResponse answer(const StaticFiles& viewer, const SiteSources& sources,
   }
   const std::optional<std::string> path = request_path(request.target);
   if (!path) return text(400, "The path is malformed.\n");
-  if (*path == "/healthz") return {200, kJson, sources.health() + '\n', {}};
+  if (*path == "/healthz") {
+    const bool is_replaced = sources.phase() == ServerPhase::replaced;
+    return {is_replaced ? 503 : 200, kJson, sources.health() + '\n', {}};
+  }
   if (*path == "/readyz") return readiness(sources.phase());
   if (*path == "/version") return {200, kJson, sources.version + '\n', {}};
   if (*path == "/metrics") {

@@ -28,8 +28,9 @@ struct SiteSources {
 /// Returns a handler for GET and HEAD:
 /// - files of the viewer ("/" is "/index.html") in the encoding that the client prefers, with a tag
 ///   for If-None-Match. Without a viewer, "/" describes how to build it.
-/// - "/healthz": 200 while the process runs, with the state of the storage.
-/// - "/readyz": 200 if the server admits sessions, 503 while the server starts, recovers or drains.
+/// - "/healthz": 200 while the process runs, with the state of the storage; 503 if another process
+///   has replaced it in its cluster.
+/// - "/readyz": 200 if the server admits sessions, 503 in every other phase.
 /// - "/version".
 /// - "/metrics" and "/slow-ticks": 401 if the request may not read them.
 HttpHandler make_http_site(StaticFiles viewer, SiteSources sources);

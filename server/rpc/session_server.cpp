@@ -85,6 +85,10 @@ bool SessionServer::is_ready() const {
   return parts_->directory.is_ready();
 }
 
+bool SessionServer::is_replaced() const {
+  return parts_->directory.is_replaced();
+}
+
 std::string SessionServer::metrics() const {
   return parts_->directory.metrics();
 }

@@ -31,6 +31,8 @@ class SessionServer : public ConnectionHandler {
   std::size_t recover();
   /// Returns false during the recovery of sessions and after drain().
   bool is_ready() const;
+  /// Returns whether another process is now this node of the cluster.
+  bool is_replaced() const;
 
   /// Creates a playing session. Returns the errors of the scene, or the error limit_reached.
   Result<SessionId> create_session(std::string name, const Scene& scene);

@@ -78,6 +78,21 @@ TEST(NodeTableTest, CountsTheNodesThatComeFirst) {
   }
 }
 
+TEST(NodeTableTest, ANodeHasAllSmallerInstructionSets) {
+  struct Case {
+    const char* machine;
+    const char* session;
+    bool has;
+  };
+  for (const auto& [machine, session, has] :
+       {Case{"avx512", "avx2", true}, Case{"avx2", "avx2", true}, Case{"baseline", "avx2", false},
+        Case{"unknown", "baseline", false}, Case{"avx512", "unknown", false}}) {
+    NodeInfo node = make_node("a");
+    node.instruction_set = machine;
+    EXPECT_EQ(has_instructions(node, session), has) << machine << ", " << session;
+  }
+}
+
 TEST(NodeTableTest, SessionsAreSpreadOverTheNodes) {
   std::map<std::string, int> first;
   for (std::uint64_t session = 1; session <= 300; ++session) {

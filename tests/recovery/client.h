@@ -32,13 +32,17 @@ class WaitingClient {
   bool is_connected() const { return connection_ != nullptr; }
   void close() { connection_->close(); }
 
-  /// Returns the complete reply.
-  Json call(const std::string& method, const Json& params = Json::object()) {
+  /// Sends a request, and returns its id.
+  int send(const std::string& method, const Json& params = Json::object()) {
     const Json request{{"jsonrpc", "2.0"}, {"id", ++id_}, {"method", method}, {"params", params}};
     const std::string text = request.dump();
     if (auto* record = next_record()) record->sent(name_, text);
     connection_->send_text(text);
-    Json reply = wait(id_);
+    return id_;
+  }
+  /// Returns the complete reply.
+  Json call(const std::string& method, const Json& params = Json::object()) {
+    Json reply = wait(send(method, params));
     if (reply.contains("closed")) throw Gone("closed");
     return reply;
   }

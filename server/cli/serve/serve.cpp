@@ -156,8 +156,10 @@ std::string version_json(const ServerSettings& settings) {
 }
 
 ServerPhase phase_of(const SharedPhase& phase, const SessionServer& sessions) {
-  const bool recovers = phase == ServerPhase::ready && !sessions.is_ready();
-  return recovers ? ServerPhase::recovering : phase.load();
+  const ServerPhase now = phase;
+  if (now != ServerPhase::ready) return now;
+  if (sessions.is_replaced()) return ServerPhase::replaced;
+  return sessions.is_ready() ? now : ServerPhase::recovering;
 }
 
 /// Serves until a signal comes.

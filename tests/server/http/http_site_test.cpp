@@ -231,13 +231,14 @@ TEST_F(HttpSite, ReadyMeansThatSessionsCanBeCreated) {
   const std::map<ServerPhase, std::string> phases = {{ServerPhase::starting, "starting"},
                                                      {ServerPhase::recovering, "recovering"},
                                                      {ServerPhase::ready, "ready"},
-                                                     {ServerPhase::draining, "draining"}};
+                                                     {ServerPhase::draining, "draining"},
+                                                     {ServerPhase::replaced, "replaced"}};
   for (const auto& [now, name] : phases) {
     phase = now;
     const HttpResponse reply = site({"GET", "/readyz"});
     EXPECT_EQ(reply.status, now == ServerPhase::ready ? 200 : 503) << name;
     EXPECT_EQ(reply.body, "{\"status\":\"" + name + "\"}\n");
-    EXPECT_EQ(site({"GET", "/healthz"}).status, 200) << name;
+    EXPECT_EQ(site({"GET", "/healthz"}).status, now == ServerPhase::replaced ? 503 : 200) << name;
   }
 }
 
