@@ -13,6 +13,13 @@ void describe(Archive& archive, Of<Archive, Vat>& v) {
   auto& [min, max, lid, motion, walls, hand] = v;
   archive(min, max, lid, motion, walls);
 }
+/// Describes the fields of the numerics except `device`. The caller of Simulation::load() sets the
+/// device of the steps.
+template <class Archive>
+void describe(Archive& archive, Of<Archive, Numerics>& v) {
+  auto& [integrator, step, tick, control, tolerance, accuracy, device] = v;
+  archive(integrator, step, tick, control, tolerance, accuracy);
+}
 /// Describes the fields of a body except `motion`, `axle` and `sub_steps`, which follow the state;
 /// see Snapshot::to_bytes().
 template <class Archive>

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "core/scene/device_choice.h"
 #include "core/support/names.h"
 #include "core/types.h"
 
@@ -42,6 +43,8 @@ struct Numerics {
   /// Relative error for which integrator, step, control and tolerance are chosen, in place of the
   /// values above; see core/numerics/choose_numerics.h.
   std::optional<Real> accuracy{};
+  /// Device of the steps, which Simulation::set_engine() sets; absent: the CPU.
+  std::optional<DeviceChoice> device{};
 };
 
 }  // namespace vat

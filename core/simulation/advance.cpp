@@ -120,18 +120,26 @@ void SimulationImpl::read_from_device() {
   if (!take_guarded_steps(steps, repeated)) engine_error->message += "; the last steps are lost";
 }
 
+Result<bool> SimulationImpl::fit_engine(AdvanceReport& report) {
+  if (engine_model == model) return engine_fits;
+  VAT_CHECK(unread_steps == 0);  // a command reads the state before it changes the model
+  const bool fitted = engine_fits;
+  const Status bound = engine->bind(model);
+  engine_model = model;
+  engine_fits = bound.ok();
+  device_is_current = false;
+  if (!bound && !lacks_features(bound)) return bound.errors();
+  if (!bound && fitted) report.device_error = bound.errors().front();
+  return engine_fits;
+}
+
 bool SimulationImpl::advance_on_device(std::uint32_t steps, AdvanceReport& report) {
   if (engine == nullptr || steps == 0) return false;
   enter("device");
-  Status prepared;
-  if (engine_model != model) {
-    prepared = engine->bind(model);
-    engine_model = prepared ? model : nullptr;
-    device_is_current = false;
-  }
+  const Result<bool> fits = fit_engine(report);
+  if (fits && !fits.value()) return false;
   const Result<bool> taken =
-      prepared ? engine->advance({controls, state, report, device_is_current}, steps)
-               : prepared.errors();
+      fits ? engine->advance({controls, state, report, device_is_current}, steps) : fits.errors();
   if (taken && taken.value()) {
     device_is_current = true;
     state.step_count += steps;

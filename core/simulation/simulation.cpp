@@ -105,7 +105,20 @@ Status Simulation::set_engine(std::unique_ptr<StepEngine> engine) {
   if (Status bound = engine->bind(impl_->model); !bound) return bound;
   impl_->engine = std::move(engine);
   impl_->engine_model = impl_->model;
+  impl_->engine_fits = true;
   return {};
+}
+Status Simulation::resume_engine(std::unique_ptr<StepEngine> engine) {
+  VAT_CHECK(engine != nullptr);
+  const Status bound = engine->bind(impl_->model);
+  if (!bound && !lacks_features(bound)) return bound;
+  impl_->engine = std::move(engine);
+  impl_->engine_model = impl_->model;
+  impl_->engine_fits = bound.ok();
+  return {};
+}
+bool Simulation::has_engine() const {
+  return impl_.unread().engine != nullptr;
 }
 std::string_view Simulation::arithmetic() const {
   const SimulationImpl& impl = impl_.unread();

@@ -61,10 +61,15 @@ class Simulation : public HostInterface {
   ~Simulation();
 
   /// Takes the following steps by `engine`, if it has the features of the scene; see
-  /// StepEngine::bind(). Otherwise fails, and changes nothing. If an engine fails later, or a
-  /// command adds a feature that it lacks, the simulation continues without it; see
-  /// AdvanceReport::device_error. Copies of the simulation have no engine.
+  /// StepEngine::bind(). Otherwise fails, and changes nothing. If an engine fails later, the
+  /// simulation continues without it; see AdvanceReport::device_error. After a command, the CPU
+  /// takes the steps while the engine lacks a feature of the scene. Copies of the simulation have
+  /// no engine.
   Status set_engine(std::unique_ptr<StepEngine> engine);
+  /// Sets the engine as set_engine(), even if the engine lacks a feature of the present scene. A
+  /// loaded simulation then continues as the saved one. Fails with the code "device_failed".
+  Status resume_engine(std::unique_ptr<StepEngine> engine);
+  bool has_engine() const;
   /// Returns a name of the arithmetic of the steps: that of the engine, or the instruction set.
   std::string_view arithmetic() const;
 

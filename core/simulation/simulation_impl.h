@@ -36,6 +36,11 @@ struct SimulationContent {
 /// applied forces are removed if their body is not in `model` or has melted.
 Controls rebind(Controls controls, const Model& before, const Model& model);
 
+/// Returns whether StepEngine::bind() has failed because the engine lacks features of the scene.
+inline bool lacks_features(const Status& bound) {
+  return !bound && bound.errors().front().code == "not_on_device";
+}
+
 /// Body that melts.
 struct MeltedBody {
   std::size_t body = 0;  ///< index into Model::bodies
@@ -60,7 +65,8 @@ struct SimulationImpl : SimulationContent {
   Workspace work;
   Stepper stepper;
   std::unique_ptr<StepEngine> engine;         ///< null: all steps are taken by `stepper`
-  std::shared_ptr<const Model> engine_model;  ///< model for which the engine is prepared
+  std::shared_ptr<const Model> engine_model;  ///< model of the last StepEngine::bind()
+  bool engine_fits = false;                   ///< the engine has the features of `engine_model`
   bool device_is_current = false;  ///< the engine has the state, which has not changed since
   /// Steps that the engine has taken since the other members of `state` were read from it.
   std::uint64_t unread_steps = 0;
@@ -147,6 +153,8 @@ struct SimulationImpl : SimulationContent {
   /// Takes the steps of a call by the engine. Returns false, with an unchanged content, if it
   /// cannot take them.
   bool advance_on_device(std::uint32_t steps, AdvanceReport& report);
+  /// Prepares the engine for a changed model. Returns false if the engine lacks a feature of it.
+  Result<bool> fit_engine(AdvanceReport& report);
   /// Reads the state of the last steps of the engine, if any. If the device has failed, the CPU
   /// repeats these steps.
   void read_from_device();

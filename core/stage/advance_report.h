@@ -58,9 +58,11 @@ struct AdvanceReport {
   /// makes the cost of local control and implicit springs comparable with that of full evaluations.
   std::uint64_t particle_evaluations = 0;
   IterationCounts iterations;
-  std::uint64_t device_steps = 0;     ///< nominal steps that a device has taken; see StepEngine
-  std::optional<Error> device_error;  ///< the device has failed, and is no longer used
-  bool bodies_changed = false;        ///< true if a body has melted
+  std::uint64_t device_steps = 0;  ///< nominal steps that a device has taken; see StepEngine
+  /// The device has failed, and is no longer used. With the code "not_on_device", the device lacks
+  /// a feature of the changed scene, and is not used before it has all features again.
+  std::optional<Error> device_error;
+  bool bodies_changed = false;             ///< true if a body has melted
   std::vector<std::uint64_t> ended_grabs;  ///< ids of grabs with removed or melted particles
   bool failed = false;                     ///< true: the state is that before the call
   std::vector<GuardEvent> events;          ///< in the order of their detection

@@ -134,6 +134,23 @@ ForceSwitches to_force_switches(const Json& value, std::string path, Errors& err
   return forces;
 }
 
+namespace {
+
+std::optional<DeviceChoice> read_device(ObjectReader& reader, Errors& errors) {
+  if (!reader.has("device")) return {};
+  const Json* value = reader.member("device");
+  if (!value->is_string()) {
+    add_error(errors, "wrong_type", reader.path_of("device"), "must be a string");
+    return {};
+  }
+  const Result<DeviceChoice> device = parse_device(value->get_ref<const std::string&>());
+  if (device) return device.value();
+  add_error(errors, "bad_value", reader.path_of("device"), device.errors().front().message);
+  return {};
+}
+
+}  // namespace
+
 Numerics to_numerics(const Json& value, std::string path, Errors& errors) {
   ObjectReader reader(value, std::move(path), errors);
   Numerics numerics;
@@ -150,6 +167,7 @@ Numerics to_numerics(const Json& value, std::string path, Errors& errors) {
                 "must be left out beside \"accuracy\", which chooses it");
     }
   }
+  numerics.device = read_device(reader, errors);
   reader.refuse_unknown();
   return numerics;
 }

@@ -112,12 +112,17 @@ Json to_json(const ForceSwitches& forces) {
 }
 
 Json to_json(const Numerics& numerics) {
-  if (numerics.accuracy) return {{"accuracy", *numerics.accuracy}, {"tick", numerics.tick}};
-  return {{"integrator", to_string(numerics.integrator)},
-          {"step", numerics.step},
-          {"tick", numerics.tick},
-          {"control", to_string(numerics.control)},
-          {"tolerance", numerics.tolerance}};
+  Json json{{"tick", numerics.tick}};
+  if (numerics.accuracy) {
+    json["accuracy"] = *numerics.accuracy;
+  } else {
+    json["integrator"] = to_string(numerics.integrator);
+    json["step"] = numerics.step;
+    json["control"] = to_string(numerics.control);
+    json["tolerance"] = numerics.tolerance;
+  }
+  if (numerics.device) json["device"] = to_text(*numerics.device);
+  return json;
 }
 
 Json to_json(const VectorField& field) {

@@ -3,9 +3,11 @@
 
 #include <array>
 #include <chrono>
+#include <fstream>
 
-#include "server/cli/common/device_use.h"
+#include "protocol/scene/scene_json.h"
 #include "server/cli/common/scene_argument.h"
+#include "server/operations/choose_device.h"
 #include "tests/cli/program.h"
 #include "tests/cli/readers.h"
 #include "tests/support/thread_runner.h"
@@ -64,6 +66,20 @@ TEST(ChooseDevice, TakesTheFasterOne) {
   }
 }
 
+TEST(ChooseDevice, LeavesSmallScenesToTheCpu) {
+  ThreadRunner runner(1);
+  const TimeSource now = [] {
+    ADD_FAILURE() << "a measurement";
+    return std::chrono::steady_clock::time_point{};
+  };
+  Scene scene = load_scene(kDamBreak, "").value();
+  BodyDescription& body = scene.bodies[0];
+  body.shape = BoxShape{std::get<BoxShape>(body.shape).center, Vec3(4, 4, 4) * body.spacing};
+  const Simulation small = Simulation::create(scene).value();
+  ASSERT_LT(small.particle_count(), kLeastForDevice);
+  EXPECT_TRUE(choose_device({.is_auto = true}, small, runner, now).is_cpu);
+}
+
 // A scene with solids has no device.
 TEST(ChooseDevice, MeasuresOnlyScenesThatADeviceTakes) {
   ThreadRunner runner(1);
@@ -80,6 +96,41 @@ TEST(DeviceCommand, TakesAnAutomaticDevice) {
       run_vat({"simulate", kDamBreak, "--until", "0.02", "--hash", "--device", "auto"});
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_THAT(result.out, ContainsRegex("^hash [0-9a-f]{16}"));
+}
+
+TEST(DeviceCommand, TakesTheDeviceOfTheSceneUnlessAnOptionNamesOne) {
+  const TemporaryFolder folder;
+  Json scene = write_scene(load_scene(kDamBreak, "").value());
+  const auto simulate = [&](const std::string& device, std::vector<std::string> options) {
+    scene["numerics"]["device"] = device;
+    const std::string file = folder.file("scene.json");
+    std::ofstream(file) << scene;
+    options.insert(options.begin(), {"simulate", file, "--until", "0.02", "--hash"});
+    return run_vat(options);
+  };
+  EXPECT_THAT(simulate("opencl:0:fast", {}).out, HasSubstr("opencl-fast"));
+  EXPECT_THAT(simulate("opencl:0", {"--device", "cpu", "--isa", "baseline"}).out,
+              HasSubstr("baseline"));
+  EXPECT_THAT(simulate("opencl:99", {}),
+              exits(1, HasSubstr("/numerics/device: opencl:99 does not exist")));
+}
+
+TEST(DeviceCommand, BenchMeasuresADeviceBesideTheCpu) {
+  const TemporaryFolder folder;
+  const std::string results = folder.file("results");
+  const ProgramResult result =
+      run_bench({"speed", "--quick", "--repetitions", "2", "--threads", "1", "--device", "opencl",
+                 "--case", "dam-break-1k-tait", "--output", results});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Table table = read_csv(results + "/speed.csv");
+  ASSERT_EQ(table.rows.size(), 2U);
+  EXPECT_EQ(table.number(0, "threads"), 1);
+  EXPECT_EQ(table.number(1, "threads"), 0);
+  EXPECT_EQ(table.text(1, "instruction set"), "opencl:0");
+  EXPECT_EQ(table.number(0, "steps"), table.number(1, "steps"));
+  EXPECT_NE(table.text(0, "state hash"), table.text(1, "state hash"));
+  EXPECT_THAT(run_bench({"speed", "--quick", "--device", "opencl", test_scene("mixed")}),
+              exits(1, HasSubstr("/bodies/1/kind: must be liquid")));
 }
 
 TEST(DeviceCommand, RecordsOnADevice) {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "core/device/device_choice.h"
+#include "core/device/device_use.h"
 #include "protocol/scene/scene_json.h"
 #include "tests/support/scenes.h"
 

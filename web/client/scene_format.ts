@@ -245,6 +245,8 @@ export interface Numerics {
   tolerance?: number;
   /** Replaces integrator, step, control and tolerance */
   accuracy?: number;
+  /** Device of the steps: the CPU, an OpenCL device of vat devices, or auto for the faster one of the CPU and the first device */
+  device?: string;
 }
 
 export interface VelocityField {

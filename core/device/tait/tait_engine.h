@@ -3,17 +3,10 @@
 #include <memory>
 
 #include "core/device/opencl/devices.h"
+#include "core/scene/device_choice.h"
 #include "core/stepping/step_engine.h"
 
 namespace vat {
-
-/// Arithmetic of sums over pairs on a device.
-enum class DeviceArithmetic : std::uint8_t {
-  exact,  ///< correctly rounded operations: the same bits on every device
-  fast,   ///< the arithmetic of the device, such as fused operations
-};
-template <>
-inline constexpr std::array kNamesOf<DeviceArithmetic>{"exact", "fast"};
 
 /// Returns an engine that takes the steps of weakly compressible liquids on an OpenCL device; see
 /// find_features_not_on_device() for its scenes. Positions and velocities are in double precision,

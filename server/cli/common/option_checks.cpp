@@ -70,7 +70,7 @@ void add_level_option(CLI::App& command, Level& level) {
       ->check(one_of({kNamesOf<Level>.begin(), kNamesOf<Level>.end()}));
 }
 
-void add_device_option(CLI::App& command, DeviceChoice& device) {
+void add_device_option(CLI::App& command, std::optional<DeviceChoice>& device) {
   const auto check = [](const std::string& text) {
     const Result<DeviceChoice> choice = parse_device(text);
     return choice ? std::string() : choice.errors().front().message;
@@ -78,7 +78,8 @@ void add_device_option(CLI::App& command, DeviceChoice& device) {
   const auto keep = [&device](const std::string& text) { device = parse_device(text).value(); };
   command
       .add_option_function<std::string>(
-          "--device", keep, "Device of the steps: " + std::string(kDeviceForm) + "; default: cpu")
+          "--device", keep,
+          "Device of the steps: " + std::string(kDeviceForm) + "; default: the scene's, or cpu")
       ->check(CLI::Validator(check, "DEVICE"));
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/device/device_choice.h"
+#include "core/scene/device_choice.h"
 #include "core/support/instruction_set.h"
 #include "protocol/scene/level.h"
 
@@ -26,7 +26,8 @@ void add_isa_option(CLI::App& command, InstructionSet& instructions);
 /// Adds the option `--level`: a level of detail of the scene. The default is normal.
 void add_level_option(CLI::App& command, Level& level);
 
-/// Adds the option `--device`: the device that takes the steps. The default is the CPU.
-void add_device_option(CLI::App& command, DeviceChoice& device);
+/// Adds the option `--device`: the device that takes the steps. The default is the
+/// device of the scene, otherwise the CPU.
+void add_device_option(CLI::App& command, std::optional<DeviceChoice>& device);
 
 }  // namespace vat

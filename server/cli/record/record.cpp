@@ -9,6 +9,7 @@
 #include <thread>
 #include <utility>
 
+#include "core/device/device_use.h"
 #include "core/limits.h"
 #include "core/numerics/choose_numerics.h"
 #include "core/threads/thread_pool.h"
@@ -17,11 +18,11 @@
 #include "server/cli/common/command.h"
 #include "server/cli/common/commands.h"
 #include "server/cli/common/data_folders.h"
-#include "server/cli/common/device_use.h"
 #include "server/cli/common/option_checks.h"
 #include "server/cli/common/scene_argument.h"
 #include "server/cli/record/record_run.h"
 #include "server/cli/simulate/simulate_schedule.h"
+#include "server/operations/choose_device.h"
 
 namespace vat {
 namespace {
@@ -54,17 +55,17 @@ struct RecordOptions {
   std::size_t threads =
       std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, kMaxRecordThreads);
   InstructionSet instructions = best_instruction_set();
-  DeviceChoice device;
+  std::optional<DeviceChoice> device;  ///< absent: the scene's
   bool resume = false;
 };
 
-RecordingOrder order_of(const RecordOptions& options, const Scene& scene,
-                        const Schedule& schedule) {
+RecordingOrder order_of(const RecordOptions& options, const Scene& scene, const Schedule& schedule,
+                        const DeviceChoice& device) {
   RecordingOrder order;
   order.program = VAT_VERSION;
   order.instruction_set = to_string(options.instructions);
-  if (!options.device.is_cpu) {
-    order.instruction_set += std::string(", opencl-") + to_string(options.device.arithmetic);
+  if (!device.is_cpu) {
+    order.instruction_set += std::string(", opencl-") + to_string(device.arithmetic);
   }
   order.scene = write_scene(scene).dump();
   order.frame_seconds = schedule.step * static_cast<Real>(schedule.steps_per_output);
@@ -81,15 +82,16 @@ void print_record(const RecordOptions& options, const RecordReport& report) {
 }
 
 /// Returns the device of the steps. An automatic choice depends on the start of the scene.
-Result<DeviceChoice> device_for(const RecordOptions& options, const Scene& scene,
-                                TaskRunner& runner) {
-  if (!options.device.is_auto) return options.device;
+Result<DeviceChoice> device_of_run(const RecordOptions& options, const Scene& scene,
+                                   TaskRunner& runner) {
+  const DeviceChoice wanted = device_for(options.device, scene);
+  if (!wanted.is_auto) return wanted;
   const Result<Simulation> simulation = Simulation::create(scene, &runner, options.instructions);
   if (!simulation) return simulation.errors();
-  return choose_device(options.device, simulation.value(), runner);
+  return choose_device(wanted, simulation.value(), runner);
 }
 
-int record(RecordOptions options) {
+int record(const RecordOptions& options) {
   Result<Scene> loaded = load_scene(options.scene, options.scenes_folder, options.level);
   if (!loaded) return fail(options.scene, loaded.errors());
   Scene& scene = loaded.value();
@@ -102,14 +104,13 @@ int record(RecordOptions options) {
   scene.numerics = with_step(scene.numerics, schedule.value().step);
   print_warnings(options.scene, scene);
   ThreadPoolRunner runner(options.threads);
-  const Result<DeviceChoice> device = device_for(options, scene, runner);
+  const Result<DeviceChoice> device = device_of_run(options, scene, runner);
   if (!device) return fail(options.scene, device.errors());
-  options.device = device.value();
   const InterruptWatch interrupt;
-  const Result<RecordReport> report =
-      record_scene({options.output, schedule.value(), order_of(options, scene, schedule.value()),
-                    options.resume, options.device},
-                   scene, options.instructions, runner, interrupt);
+  const Result<RecordReport> report = record_scene(
+      {options.output, schedule.value(), order_of(options, scene, schedule.value(), device.value()),
+       options.resume, device.value()},
+      scene, options.instructions, runner, interrupt);
   if (!report) return fail(options.scene, report.errors());
   print_record(options, report.value());
   if (!report.value().failure) return fail(options.scene, report.value().failure.errors());

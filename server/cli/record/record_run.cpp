@@ -5,8 +5,8 @@
 #include <sstream>
 #include <utility>
 
+#include "core/device/device_use.h"
 #include "protocol/recording/recording_file.h"
-#include "server/cli/common/device_use.h"
 #include "server/cli/simulate/simulate_progress.h"
 
 namespace vat {
@@ -73,7 +73,7 @@ Result<RecordedRun> resume_run(const RecordPlan& plan, InstructionSet instructio
   }
   Result<Simulation> simulation = Simulation::load(state.value().snapshot, &runner, instructions);
   if (!simulation) return simulation.errors();
-  if (Status used = use_device(plan.device, simulation.value()); !used) return used.errors();
+  if (Status used = resume_device(plan.device, simulation.value()); !used) return used.errors();
   FrameRecorder recorder(recorder_settings(plan.order));
   if (Status read = read_last_frames(file.value(), state.value(), recorder); !read) {
     return read.errors();

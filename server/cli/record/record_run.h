@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "core/device/device_choice.h"
+#include "core/scene/device_choice.h"
 #include "core/simulation/simulation.h"
 #include "core/support/result.h"
 #include "protocol/recording/frame_recorder.h"

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "core/device/device_use.h"
 #include "core/limits.h"
 #include "core/numerics/choose_numerics.h"
 #include "core/simulation/simulation.h"
@@ -17,7 +18,6 @@
 #include "server/cli/common/command.h"
 #include "server/cli/common/commands.h"
 #include "server/cli/common/data_folders.h"
-#include "server/cli/common/device_use.h"
 #include "server/cli/common/option_checks.h"
 #include "server/cli/common/scene_argument.h"
 #include "server/cli/simulate/simulate_interrupt.h"
@@ -25,6 +25,7 @@
 #include "server/cli/simulate/simulate_progress.h"
 #include "server/cli/simulate/simulate_run.h"
 #include "server/cli/simulate/simulate_schedule.h"
+#include "server/operations/choose_device.h"
 #include "server/output/diagnostics_writer.h"
 #include "server/output/frame_writer.h"
 
@@ -102,7 +103,7 @@ struct SimulateOptions {
   std::optional<Real> accuracy;
   std::size_t threads = 1;
   InstructionSet instructions = best_instruction_set();
-  DeviceChoice device;
+  std::optional<DeviceChoice> device;  ///< absent: the scene's
   std::string output;
   std::string diagnostics;
   bool surface = false;
@@ -249,7 +250,8 @@ int simulate(const SimulateOptions& options) {
   Result<Simulation> created = Simulation::create(scene.value(), &runner, options.instructions);
   if (!created) return fail(options.scene, created.errors());
   Simulation& simulation = created.value();
-  const Status set = use_device(choose_device(options.device, simulation, runner), simulation);
+  const DeviceChoice wanted = device_for(options.device, scene.value());
+  const Status set = use_device(choose_device(wanted, simulation, runner), simulation);
   if (!set) return fail(options.scene, set.errors());
   if (options.plan) std::cout << simulation.plan_text();
   if (options.only_plan()) return kExitOk;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/device/device_use.h"
 #include "core/simulation/simulation.h"
 #include "server/cli/simulate/simulate_run.h"
 #include "tests/bench/report/table.h"
@@ -43,6 +44,8 @@ Result<AdvanceReport> advance_by(Simulation& simulation, std::uint64_t steps) {
     if (report.failed) return describe(report.events.back(), simulation);
     total.steps += report.steps;
     total.undone_steps += report.undone_steps;
+    total.device_steps += report.device_steps;
+    if (report.device_error) total.device_error = report.device_error;
   }
   return total;
 }
@@ -144,28 +147,38 @@ class TimedScene {
     if (!warmed_up) return warmed_up.errors();
     SpeedRow row = describe_scene(name, simulation);
     row.creation = creation;
-    return std::unique_ptr<TimedScene>(new TimedScene(std::move(runner), std::move(simulation), row,
-                                                      setup.threads, settings.measured));
+    std::unique_ptr<TimedScene> timed(new TimedScene(std::move(runner), std::move(simulation), row,
+                                                     setup.threads, settings.measured));
+    DeviceChoice device = device_for(setup.device, scene);
+    if (device.is_auto) device = {.is_cpu = false};
+    if (device.is_cpu) return timed;
+    if (Status added = timed->add_device(device, row); !added) return added.errors();
+    return timed;
   }
 
-  /// Times the scene once with each number of threads.
+  /// Times the scene once with each number of threads, and on the device.
   Status repeat() {
     for (std::size_t n = 0; n < rows_.size(); ++n) {
-      runner_->choose(n);
-      if (Status done = time_repetition(rows_[n]); !done) return done;
+      const bool is_device = !rows_[n].device.empty();
+      if (!is_device) runner_->choose(n);
+      if (Status done = time_repetition(rows_[n], is_device ? *on_device_ : on_cpu_); !done) {
+        return done;
+      }
     }
     return {};
   }
+
+  bool has_device() const { return on_device_.has_value(); }
 
   std::size_t bytes_of_snapshot() const { return bytes_of_snapshot_; }
 
   /// Adds the results of diagnostics and returns the rows.
   Result<std::vector<SpeedRow>> finish() {
-    simulation_.restore(start_);
+    on_cpu_.simulation.restore(start_);
     const Result<FlowFigures> flow =
-        sample_flow(simulation_, steps_, rows_.front().liquid_particles > 0);
+        sample_flow(on_cpu_.simulation, steps_, rows_.front().liquid_particles > 0);
     if (!flow) return flow.errors();
-    if (Status same = check_hash("looked at step by step"); !same) return same.errors();
+    if (Status same = check_hash(on_cpu_, "looked at step by step"); !same) return same.errors();
     for (SpeedRow& row : rows_) {
       row.flow = flow.value();
       std::ranges::sort(row.seconds);
@@ -174,61 +187,92 @@ class TimedScene {
   }
 
  private:
+  struct Run {
+    Simulation simulation;
+    std::optional<std::uint64_t> hash{};  ///< after a repetition
+  };
+
   TimedScene(std::unique_ptr<SwitchRunner> runner, Simulation simulation, const SpeedRow& row,
              const std::vector<std::size_t>& threads, Real measured)
       : runner_(std::move(runner)),
-        simulation_(std::move(simulation)),
+        on_cpu_{std::move(simulation)},
         rows_(threads.size(), row),
-        steps_(speed_steps_of(simulation_, measured)),
+        steps_(speed_steps_of(on_cpu_.simulation, measured)),
         bytes_of_snapshot_(heap_in_use()),
-        start_(simulation_.snapshot()) {
+        start_(on_cpu_.simulation.snapshot()) {
     bytes_of_snapshot_ = heap_in_use() - bytes_of_snapshot_;
     for (std::size_t n = 0; n < rows_.size(); ++n) rows_[n].threads = threads[n];
   }
 
-  bool all_sleep() const {
-    return simulation_.sleeping_body_count() == simulation_.bodies().size();
+  Status add_device(const DeviceChoice& device, SpeedRow row) {
+    on_device_.emplace(Run{Simulation::from(start_, runner_.get())});
+    row.device = to_text(device);
+    row.threads = 0;
+    rows_.push_back(std::move(row));
+    return use_device(device, on_device_->simulation);
   }
 
-  Status time_repetition(SpeedRow& row) {
-    simulation_.restore(start_);
-    const Real begin_time = simulation_.time();
+  static bool all_sleep(const Simulation& simulation) {
+    return simulation.sleeping_body_count() == simulation.bodies().size();
+  }
+
+  Status time_repetition(SpeedRow& row, Run& run) {
+    Simulation& simulation = run.simulation;
+    simulation.restore(start_);
+    const Real begin_time = simulation.time();
     StageClock stages;
-    simulation_.set_observer(&stages);
+    simulation.set_observer(&stages);
     const Clock::time_point begin = Clock::now();
-    const Result<AdvanceReport> report = advance_by(simulation_, steps_);
+    const Result<AdvanceReport> report = advance_by(simulation, steps_);
     const Real seconds = speed_seconds_since(begin);
-    simulation_.set_observer(nullptr);
+    simulation.set_observer(nullptr);
     if (!report) return report.errors();
     if (row.seconds.empty() || seconds < std::ranges::min(row.seconds)) {
       row.stages = stages.stages();
     }
     row.seconds.push_back(seconds);
-    row.steps = std::max(report.value().steps, all_sleep() ? steps_ : 0);
+    row.steps = std::max(report.value().steps, all_sleep(simulation) ? steps_ : 0);
     row.undone_steps = report.value().undone_steps;
-    row.simulated = simulation_.time() - begin_time;
-    row.state_hash = simulation_.state_hash();
-    return check_hash("with " + std::to_string(row.threads) + " threads");
+    row.simulated = simulation.time() - begin_time;
+    row.state_hash = simulation.state_hash();
+    if (row.device.empty()) {
+      return check_hash(run, "with " + std::to_string(row.threads) + " threads");
+    }
+    if (Status same = check_hash(run, "on " + row.device); !same) return same;
+    return check_device_steps(report.value(), row.device);
+  }
+
+  /// Checks that the device has taken all steps.
+  Status check_device_steps(const AdvanceReport& report, const std::string& device) const {
+    if (report.device_error) return *report.device_error;
+    if (report.device_steps == steps_) return {};
+    return Error{"device_failed", "/device",
+                 device + " has taken " + std::to_string(report.device_steps) + " of " +
+                     std::to_string(steps_) + " steps"};
   }
 
   /// Checks that all repetitions end in one state.
-  Status check_hash(const std::string& which) {
-    const std::uint64_t hash = simulation_.state_hash();
-    if (!hash_) hash_ = hash;
-    if (hash == *hash_) return {};
+  Status check_hash(Run& run, const std::string& which) {
+    const std::uint64_t hash = run.simulation.state_hash();
+    if (!run.hash) run.hash = hash;
+    if (hash == *run.hash) return {};
     return Error{"not_deterministic", "",
                  "a run " + which + " ends in another state than the first, with " +
                      std::to_string(rows_.front().threads) + " threads"};
   }
 
   std::unique_ptr<SwitchRunner> runner_;
-  Simulation simulation_;
+  Run on_cpu_;
+  std::optional<Run> on_device_{};
   std::vector<SpeedRow> rows_;
   std::uint64_t steps_;
   std::size_t bytes_of_snapshot_;
   Snapshot start_;
-  std::optional<std::uint64_t> hash_;
 };
+
+std::string SpeedRow::arithmetic() const {
+  return device.empty() ? to_string(instructions) : device;
+}
 
 Real SpeedRow::median_seconds() const {
   return median_of_sorted(seconds);
@@ -266,7 +310,8 @@ Result<std::vector<SpeedRow>> measure(const std::string& name, const Scene& scen
   if (!done) return done.errors();
   const std::size_t bytes = bytes_of_simulation();
   Result<std::vector<SpeedRow>> rows = timed.value()->finish();
-  if (!rows || heap_before == 0) return rows;
+  // The memory of a device on the CPU, such as PoCL, cannot be told from that of the scene.
+  if (!rows || heap_before == 0 || timed.value()->has_device()) return rows;
   for (SpeedRow& row : rows.value()) {
     const auto particles = static_cast<Real>(row.particles);
     row.bytes_per_particle = static_cast<Real>(bytes) / particles;

@@ -3,9 +3,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/scene/device_choice.h"
 #include "core/scene/scene.h"
 #include "core/support/instruction_set.h"
 #include "core/support/result.h"
@@ -38,8 +40,9 @@ struct SpeedRow {
   std::size_t particles = 0;
   std::size_t liquid_particles = 0;
   std::size_t springs = 0;
-  std::size_t threads = 0;
+  std::size_t threads = 0;  ///< 0 on a device
   InstructionSet instructions = InstructionSet::baseline;
+  std::string device;              ///< see to_text(DeviceChoice); empty: the CPU
   std::vector<Real> seconds;       ///< wall times of the repetitions, ascending
   std::uint64_t steps = 0;         ///< per repetition; if all bodies sleep, the skipped steps
   std::uint64_t undone_steps = 0;  ///< steps that the guard undid
@@ -53,6 +56,8 @@ struct SpeedRow {
   std::uint64_t state_hash = 0;           ///< after a repetition
   std::vector<StageClock::Stage> stages;  ///< of the fastest repetition
 
+  /// Returns the device, or the instruction set.
+  std::string arithmetic() const;
   Real median_seconds() const;
   Real median_ms_per_step() const;
   Real least_ms_per_step() const;
@@ -65,10 +70,12 @@ struct SpeedRow {
 struct SpeedSetup {
   std::vector<std::size_t> threads;  ///< not empty
   InstructionSet instructions = InstructionSet::baseline;
+  std::optional<DeviceChoice> device{};  ///< absent: the scene's; automatic: the first device
 };
 
-/// Times one scene with each number of threads in turn. Fails if the scene is invalid, a step
-/// fails, or two repetitions end in different states.
+/// Times one scene with each number of threads in turn, and then on the device, if any, from the
+/// same state. Fails if the scene is invalid, the device lacks a feature of the scene, a step
+/// fails, or two repetitions on the CPU or on the device end in different states.
 Result<std::vector<SpeedRow>> measure(const std::string& name, const Scene& scene,
                                       const SpeedSetup& setup, const SpeedSettings& settings);
 

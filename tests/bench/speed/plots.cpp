@@ -26,8 +26,9 @@ LogPlot size_plot(const std::vector<SpeedRow>& rows) {
   LogPlot plot{"Dam breaks: time of a step", "particles", "ns per particle and step", {}, "%g"};
   for (const SpeedRow& row : rows) {
     if (!row.name.starts_with(kScaledCase)) continue;
-    const std::string label = row.solver + ", " + std::to_string(row.threads) +
-                              (row.threads == 1 ? " thread" : " threads");
+    const std::string threads =
+        std::to_string(row.threads) + (row.threads == 1 ? " thread" : " threads");
+    const std::string label = row.solver + ", " + (row.device.empty() ? threads : row.device);
     const Real particles = static_cast<Real>(row.particles);
     series_of(plot, label, row.threads, dash_of(row))
         .points.push_back({particles, 1e6 * row.median_ms_per_step() / particles});
@@ -43,7 +44,7 @@ LogPlot thread_plot(const std::vector<SpeedRow>& rows) {
     Series& series =
         series_of(plot, one.name.substr(std::string(kScaledCase).size()), colour++, dash_of(one));
     for (const SpeedRow& row : rows) {
-      if (row.name != one.name) continue;
+      if (row.name != one.name || !row.device.empty()) continue;
       series.points.push_back(
           {static_cast<Real>(row.threads), one.median_seconds() / row.median_seconds()});
     }

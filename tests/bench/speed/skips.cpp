@@ -131,7 +131,7 @@ Result<SkipResult> measure_skip(SkipPair pair, const SpeedSetup& setup) {
       measure_in_turn({{pair.name + "-with", pair.with}, {pair.name + "-without", pair.without}},
                       setup, pair.settings);
   if (!rows) return rows.errors();
-  const auto middle = rows.value().begin() + static_cast<std::ptrdiff_t>(setup.threads.size());
+  const auto middle = rows.value().begin() + static_cast<std::ptrdiff_t>(rows.value().size() / 2);
   SkipResult result{std::move(pair), {}, {}};
   std::move(rows.value().begin(), middle, std::back_inserter(result.with));
   std::move(middle, rows.value().end(), std::back_inserter(result.without));

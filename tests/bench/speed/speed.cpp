@@ -206,6 +206,7 @@ void add_speed_command(CLI::App& app, int& exit_code) {
       ->take_all()
       ->expected(1);
   add_isa_option(*command, options->setup.instructions);
+  add_device_option(*command, options->setup.device);
   command->add_option("--repetitions", options->repetitions, "Repetitions of each measurement")
       ->check(CLI::Range(1, 1000));
   command->add_option("scenes", options->scenes, "Scenes to time in place of the cases");

@@ -27,6 +27,7 @@ class FakeEngine : public StepEngine {
   std::string_view arithmetic() const override { return "fake"; }
   Status bind(std::shared_ptr<const Model>) override {
     ++record_.binds;
+    if (record_.is_lost) return Error{"device_failed", "/device", "lost"};
     if (!record_.is_bindable) return Error{"not_on_device", "/bodies/1/kind", "no solids"};
     return {};
   }
@@ -98,8 +99,9 @@ TEST(Engine, LeavesRefusedStepsToTheCpu) {
 }
 
 TEST(Engine, IsNotUsedAfterAFailure) {
-  Recorded record{.is_lost = true};
+  Recorded record;
   Simulation simulation = make_with(record);
+  record.is_lost = true;
   const AdvanceReport report = simulation.advance(4);
   ASSERT_TRUE(report.device_error.has_value());
   EXPECT_EQ(report.device_error->code, "device_failed");
@@ -128,7 +130,7 @@ TEST(Engine, IsRefusedWithTheErrorsOfTheScene) {
   EXPECT_EQ(simulation.advance(1).device_steps, 0U);
 }
 
-TEST(Engine, IsNotUsedAfterACommandAddsAFeatureThatItLacks) {
+TEST(Engine, IsNotUsedWhileTheSceneHasAFeatureThatItLacks) {
   Recorded record;
   Simulation simulation = make_with(record);
   record.is_bindable = false;
@@ -137,6 +139,37 @@ TEST(Engine, IsNotUsedAfterACommandAddsAFeatureThatItLacks) {
   ASSERT_TRUE(report.device_error.has_value());
   EXPECT_EQ(report.device_error->code, "not_on_device");
   EXPECT_EQ(report.steps, 1U);
+  EXPECT_EQ(report.device_steps, 0U);
+  // The engine is asked, and the error told, only once for a scene.
+  EXPECT_FALSE(simulation.advance(1).device_error.has_value());
+  EXPECT_EQ(record.binds, 2);
+  ASSERT_TRUE(simulation.set_gravity({0, 0, -2}).ok());
+  EXPECT_FALSE(simulation.advance(1).device_error.has_value());
+  EXPECT_EQ(record.binds, 3);
+  record.is_bindable = true;
+  ASSERT_TRUE(simulation.set_gravity({0, 0, -3}).ok());
+  EXPECT_EQ(simulation.advance(1).device_steps, 1U);
+  EXPECT_TRUE(simulation.has_engine());
+}
+
+TEST(Engine, IsResumedWithAFeatureThatItLacks) {
+  Recorded record{.is_bindable = false};
+  Simulation simulation = make_simulation(make_scene_of_test());
+  ASSERT_TRUE(simulation.resume_engine(std::make_unique<FakeEngine>(record)).ok());
+  const AdvanceReport report = simulation.advance(1);
+  EXPECT_EQ(report.device_steps, 0U);
+  EXPECT_FALSE(report.device_error.has_value());
+  record.is_bindable = true;
+  ASSERT_TRUE(simulation.set_gravity({0, 0, -1}).ok());
+  EXPECT_EQ(simulation.advance(1).device_steps, 1U);
+}
+
+TEST(Engine, IsNotResumedIfItsDeviceFails) {
+  Recorded record{.is_lost = true};
+  Simulation simulation = make_simulation(make_scene_of_test());
+  EXPECT_EQ(errors_of(simulation.resume_engine(std::make_unique<FakeEngine>(record))),
+            "device_failed /device");
+  EXPECT_FALSE(simulation.has_engine());
 }
 
 }  // namespace

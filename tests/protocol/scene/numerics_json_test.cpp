@@ -53,6 +53,25 @@ TEST(NumericsJson, RangesAreNamed) {
   }
 }
 
+TEST(NumericsJson, DevicesAreReadAndWritten) {
+  for (const char* device : {"cpu", "auto", "opencl:1", "opencl:2:fast"}) {
+    for (const char* others : {"", R"("accuracy": 1e-3, )"}) {
+      const Result<Scene> scene =
+          read("{" + std::string(others) + R"("device": ")" + device + "\"}");
+      ASSERT_TRUE(scene) << device;
+      EXPECT_EQ(scene.value().numerics.device, parse_device(device).value());
+      EXPECT_EQ(write_scene(scene.value())["numerics"]["device"], device);
+    }
+  }
+  EXPECT_FALSE(write_scene(read("{}").value())["numerics"].contains("device"));
+  for (const auto& [device, code] : {std::pair{"\"gpu\"", "bad_value"}, {"0", "wrong_type"}}) {
+    const Result<Scene> scene = read(R"({"device": )" + std::string(device) + "}");
+    ASSERT_FALSE(scene) << device;
+    EXPECT_EQ(scene.errors()[0].path, "/numerics/device");
+    EXPECT_EQ(scene.errors()[0].code, code);
+  }
+}
+
 TEST(NumericsJson, LocalControlNeedsVelocityVerlet) {
   EXPECT_TRUE(read(R"({"control": "local"})"));
   const Result<Scene> scene = read(R"({"control": "local", "integrator": "heun"})");

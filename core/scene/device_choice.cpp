@@ -1,10 +1,6 @@
-#include "core/device/device_choice.h"
+#include "core/scene/device_choice.h"
 
 #include <charconv>
-#include <string>
-
-#include "core/device/opencl/devices.h"
-#include "core/support/check.h"
 
 namespace vat {
 
@@ -15,6 +11,7 @@ Result<DeviceChoice> parse_device(std::string_view text) {
                   "'" + std::string(text) + "' must be " + std::string(kDeviceForm)};
   constexpr std::string_view kOpenCl = "opencl";
   constexpr std::string_view kFast = ":fast";
+  constexpr std::size_t kMaxDigits = 9;
   if (!text.starts_with(kOpenCl)) return bad;
   text.remove_prefix(kOpenCl.size());
   DeviceChoice choice{.is_cpu = false};
@@ -25,16 +22,17 @@ Result<DeviceChoice> parse_device(std::string_view text) {
   if (text.empty()) return choice;
   const char* end = text.data() + text.size();
   const auto [stop, code] = std::from_chars(text.data() + 1, end, choice.index);
-  if (text[0] != ':' || code != std::errc() || stop != end) return bad;
+  if (text[0] != ':' || text.size() > 1 + kMaxDigits || code != std::errc() || stop != end) {
+    return bad;
+  }
   return choice;
 }
 
-Result<std::unique_ptr<StepEngine>> make_engine(const DeviceChoice& choice) {
-  VAT_CHECK(!choice.is_auto);
-  if (choice.is_cpu) return std::unique_ptr<StepEngine>();
-  const Result<opencl::Device> device = opencl::find_device(choice.index);
-  if (!device) return device.errors();
-  return make_tait_engine(device.value(), choice.arithmetic);
+std::string to_text(const DeviceChoice& choice) {
+  if (choice.is_auto) return "auto";
+  if (choice.is_cpu) return "cpu";
+  const bool is_fast = choice.arithmetic == DeviceArithmetic::fast;
+  return "opencl:" + std::to_string(choice.index) + (is_fast ? ":fast" : "");
 }
 
 }  // namespace vat
