@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "core/scene/device_choice.h"
 #include "core/support/instruction_set.h"
 #include "server/access/access.h"
 #include "server/cluster/cluster_settings.h"
@@ -31,7 +32,8 @@ struct ServerSettings {
   ServerLimits limits;
   std::string version;  ///< version in the result of server.info
   InstructionSet instructions = best_instruction_set();
-  std::size_t threads = 0;  ///< threads for sessions; 0: number of cores
+  std::optional<DeviceChoice> device{};  ///< see SessionEnvironment::device
+  std::size_t threads = 0;               ///< threads for sessions; 0: number of cores
   AccessSettings access;
   std::string data_folder;  ///< folder for stored sessions; empty: sessions are in memory only
   StorageSettings storage;

@@ -120,13 +120,16 @@ std::variant<SessionId, RpcError> SessionDirectory::create(std::string name, con
   }
   const SessionEnvironment& environment = resources_.environment;
   const InstructionSet instructions = instructions_for_new();
-  auto simulation = make_simulation(scene, environment, instructions);
+  auto chosen = with_device(scene, environment);
+  if (auto* error = std::get_if<RpcError>(&chosen)) return std::move(*error);
+  const Scene& with_choice = std::get<Scene>(chosen);
+  auto simulation = make_on_device(with_choice, environment, instructions);
   if (auto* error = std::get_if<RpcError>(&simulation)) return std::move(*error);
   auto share = resources_.budget.take(resources_of(std::get<Simulation>(simulation)));
   if (const auto* excess = std::get_if<LimitExcess>(&share)) return limit_reached(*excess);
   std::optional<Stored> stored;
   try {
-    stored = store(name, scene, instructions);
+    stored = store(name, with_choice, instructions);
   } catch (const StorageError& error) {
     log_error("a session cannot be stored: {}", error.what());
     return storage_failed(error.kind());

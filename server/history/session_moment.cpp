@@ -111,10 +111,11 @@ SessionProgress SessionMoment::progress() const {
 }
 
 std::string SessionMoment::fields() const {
-  return Json{{"position", position}, {"tick", tick},           {"sequence", sequence},
+  Json fields{{"position", position}, {"tick", tick},           {"sequence", sequence},
               {"loaded", loaded},     {"last_grab", last_grab}, {"epoch", epoch},
-              {"playing", playing},   {"speed", speed},         {"participants", participants}}
-      .dump();
+              {"playing", playing},   {"speed", speed},         {"participants", participants}};
+  if (on_cpu) fields["on_cpu"] = true;
+  return fields.dump();
 }
 
 SessionMoment read_moment(const std::string& fields, Snapshot snapshot) {
@@ -130,6 +131,7 @@ SessionMoment read_moment(const std::string& fields, Snapshot snapshot) {
   moment.epoch = static_cast<std::uint32_t>(reader.count("epoch", 1, ~std::uint32_t{0}));
   moment.playing = reader.boolean("playing");
   moment.speed = reader.real("speed", 0, kAnyMax);
+  moment.on_cpu = reader.boolean("on_cpu", false);
   if (const Json* participants = reader.member("participants", true)) {
     moment.participants = *participants;
   }

@@ -22,6 +22,7 @@ struct SessionMoment {
   bool playing = true;
   double speed = 1;
   std::uint64_t people = 0;  ///< number of changes of the participants; not stored
+  bool on_cpu = false;       ///< the CPU continues, because the device of the scene has failed
   Json participants;         ///< see write_participants()
   Snapshot snapshot;
 

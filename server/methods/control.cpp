@@ -12,8 +12,8 @@ ActionResult load_scene(SessionCore& core, const Json& value, Level level) {
   auto scene = read_client_scene(value, environment.catalogue, level);
   if (auto* error = std::get_if<RpcError>(&scene)) return std::move(*error);
   // The session keeps its instruction set, so that its log reproduces the same bits.
-  auto simulation = make_simulation(std::get<Scene>(scene), environment,
-                                    core.run().simulation().instruction_set());
+  auto simulation = make_on_device(std::get<Scene>(scene), environment,
+                                   core.run().simulation().instruction_set());
   if (auto* error = std::get_if<RpcError>(&simulation)) return std::move(*error);
   if (const auto excess = core.run().admit(std::get<Simulation>(simulation))) {
     return limit_reached(*excess);

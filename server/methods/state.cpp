@@ -93,12 +93,19 @@ SessionAction read_state_connections(ObjectReader& params, Errors& errors) {
 }
 
 SessionAction read_session_hash(ObjectReader&, Errors&) {
-  return read_later([](SessionView& view) -> RpcResult {
-    return Json{{"hash", describe_hash(view.snapshot().state_hash())},
-                {"instruction_set", to_string(view.snapshot().instruction_set())},
-                {"time", view.time()},
-                {"position", view.position()}};
-  });
+  return [](SessionCore& core, Participant&) -> ActionResult {
+    const DeviceChoice device = core.run().device();
+    return Read{true,
+                [device](SessionView& view) -> RpcResult {
+                  Json content{{"hash", describe_hash(view.snapshot().state_hash())},
+                               {"instruction_set", to_string(view.snapshot().instruction_set())},
+                               {"time", view.time()},
+                               {"position", view.position()}};
+                  if (!device.is_cpu) content["device"] = to_text(device);
+                  return content;
+                },
+                to_text(device)};
+  };
 }
 
 SessionAction read_session_stats(ObjectReader& params, Errors&) {
@@ -118,6 +125,10 @@ SessionAction read_session_stats(ObjectReader& params, Errors&) {
                {"seconds", to_seconds(totals.time)},
                {"longest_tick", to_seconds(totals.longest_tick)},
                {"stages", describe_stages(totals.stages)}};
+    if (const DeviceChoice device = core.run().device(); !device.is_cpu) {
+      stats["device"] = to_text(device);
+      stats["device_steps"] = totals.device_steps;
+    }
     if (!with_diagnostics) return stats;
     return Read{true,
                 [stats](SessionView& view) -> RpcResult {

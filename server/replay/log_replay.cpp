@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "core/device/device_use.h"
 #include "core/support/check.h"
 #include "server/session/core/saved_state.h"
 #include "server/session/core/scene_loading.h"
@@ -60,6 +61,16 @@ Simulation load_entry_scene(const LogEntry& entry, const SessionEnvironment& env
   auto simulation = make_simulation(std::get<Scene>(scene), environment, instructions);
   if (const auto* error = std::get_if<RpcError>(&simulation)) fail_entry(entry, error->message);
   return std::get<Simulation>(std::move(simulation));
+}
+
+void resume_on_device(Simulation& simulation, const Scene& scene,
+                      const SessionEnvironment& environment) {
+  const DeviceChoice device = device_of(scene, environment);
+  const Status resumed = resume_device(device, simulation);
+  if (resumed) return;
+  throw StorageError(StorageError::Kind::failed,
+                     "its device is not available: " + resumed.errors().front().message +
+                         "; with --device cpu, the CPU continues, with other bits");
 }
 
 void repeat_entry(SessionCore& core, const LogEntry& entry) {

@@ -27,6 +27,11 @@ Json parse_entry_params(const LogEntry& entry);
 Simulation load_entry_scene(const LogEntry& entry, const SessionEnvironment& environment,
                             InstructionSet instructions);
 
+/// Continues a simulation on the device of its scene; see resume_device(). Throws StorageError
+/// (kind `failed`) if this machine lacks the device.
+void resume_on_device(Simulation& simulation, const Scene& scene,
+                      const SessionEnvironment& environment);
+
 /// Executes a log entry. Throws Diverged if the entry is refused but was accepted before. Throws
 /// StorageError (kind `corrupt`) if this program cannot read the entry.
 void repeat_entry(SessionCore& core, const LogEntry& entry);

@@ -51,12 +51,14 @@ Simulation ReplayPlayer::begin() const {
   if (const Status available = check_available(recording_.instructions); !available) {
     throw StorageError(StorageError::Kind::failed, available.errors().front().message);
   }
-  return load_scene(recording_.log.front().sequence);
+  Simulation simulation = load_scene(recording_.log.front().sequence);
+  resume_on_device(simulation, simulation.scene(), environment_);
+  return simulation;
 }
 
 void ReplayPlayer::go_to_begin(SessionCore& core) {
   if (!recording_.is_whole()) return go_to(core, recording_.moments.front());
-  Simulation simulation = load_scene(recording_.log.front().sequence);
+  Simulation simulation = begin();
   const Snapshot as_loaded = simulation.snapshot();
   const LogEntry& first = recording_.log.front();
   const SessionMoment moment{.position = recording_.begin,
@@ -79,7 +81,9 @@ void ReplayPlayer::go_to(SessionCore& core, const RecordedMoment& moment) {
   if (const auto excess = core.run().admit(simulation)) {
     fail_replay("state", limit_reached(*excess).message);
   }
-  resume(core, read, std::move(simulation), scene_as_loaded(read.loaded));
+  const Snapshot& as_loaded = scene_as_loaded(read.loaded);
+  if (!read.on_cpu) resume_on_device(simulation, as_loaded.scene(), environment_);
+  resume(core, read, std::move(simulation), as_loaded);
   find_place(core);
 }
 

@@ -36,6 +36,15 @@ Simulation SessionRecovery::begin() {
     throw StorageError(StorageError::Kind::failed, available.errors().front().message);
   }
   instructions_ = instructions.value();
+  Simulation simulation = find_begin();
+  if (!start_ || !start_->moment.on_cpu) {
+    resume_on_device(simulation, start_ ? start_->as_loaded.scene() : simulation.scene(),
+                     environment_);
+  }
+  return simulation;
+}
+
+Simulation SessionRecovery::find_begin() {
   const std::vector<CheckpointPlace> places = storage_.checkpoints().places(stored_.number);
   if (const auto recent =
           find_recent(places.empty() ? std::nullopt : std::optional(places.back()))) {
@@ -112,6 +121,7 @@ void SessionRecovery::repeat_log(SessionCore& core) {
       resume(core, start_->moment, std::move(simulation), start_->as_loaded);
     }
     execute_log(core);
+    check_device_is_used(core);
   } catch (const Diverged& difference) {
     diverge(core, {core.run().position(), core.run().tick(), difference.what()});
   }
@@ -168,6 +178,15 @@ void SessionRecovery::execute_log(SessionCore& core) {
     compare(core);
   }
   run_to(core, stored_.reached, cancelled_);
+}
+
+void SessionRecovery::check_device_is_used(const SessionCore& core) const {
+  const SessionRun& run = core.run();
+  const bool was_lost =
+      start_ && start_->moment.on_cpu && start_->moment.loaded == core.history().scene_sequence();
+  if (!run.has_lost_device() || was_lost) return;
+  throw Diverged("the CPU computes in place of the device " +
+                 to_text(*run.as_loaded().scene().numerics.device));
 }
 
 void SessionRecovery::repeat_last_entry(SessionCore& core, const LogEntry& entry) {

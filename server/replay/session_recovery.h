@@ -41,8 +41,12 @@ class SessionRecovery {
   std::optional<Simulation> begin_at_place(const CheckpointPlace& place);
   std::optional<Simulation> begin_at(const Checkpoint& checkpoint);
   Simulation begin_at_scene();
+  /// Returns the simulation at the beginning of the repeated log, without its device.
+  Simulation find_begin();
   Simulation load_scene(std::uint64_t sequence);
   void execute_log(SessionCore& core);
+  /// Throws Diverged if the CPU has repeated ticks of a device.
+  void check_device_is_used(const SessionCore& core) const;
   /// Executes the last entry of the log. The mark of a refusal may be missing, because the server
   /// ended before writing it. No client has received a reply to such an entry.
   void repeat_last_entry(SessionCore& core, const LogEntry& entry);

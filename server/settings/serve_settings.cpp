@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/limits.h"
+#include "core/scene/device_choice.h"
 #include "core/support/instruction_set.h"
 #include "server/history/recording.h"
 #include "server/transport/client_address.h"
@@ -58,6 +59,11 @@ std::string check_instructions(const std::string& name) {
   const Result<InstructionSet> set = parse_instruction_set(name);
   const Status usable = set ? check_available(set.value()) : Status(set.errors());
   return usable ? std::string() : usable.errors().front().message;
+}
+
+std::string check_device(const std::string& device) {
+  if (device == "scene" || parse_device(device)) return {};
+  return std::string("must be scene, ") + kDeviceForm;
 }
 
 bool has_only(std::string_view text, std::string_view characters) {
@@ -135,6 +141,12 @@ std::vector<Setting> server_group(ServeSettings& s) {
       text_setting("isa", s.instructions, "SET",
                    "Instruction set: baseline, avx2, avx512, or best (the best of the machine)",
                    check_instructions),
+      text_setting(
+          "device", s.device, "DEVICE",
+          "Device of the steps of new scenes: cpu, opencl:N of vat devices, opencl:N:fast, "
+          "auto (the faster one of the CPU and the first device), or scene (the device that "
+          "the scene names, otherwise the CPU)",
+          check_device),
       word_setting("log_level", s.log_level, {"debug", "info", "warn", "error", "off"},
                    "Lowest level of logged messages"),
       word_setting("log_format", s.log_format, {"text", "json"},

@@ -28,6 +28,7 @@ struct ServeSettings {
   std::size_t threads = 0;  ///< 0: one per core
   std::size_t endpoints = 1;
   std::string instructions = "best";  ///< "best", or the name of an instruction set
+  std::string device = "scene";       ///< "scene", or a text for parse_device()
   std::string log_level = "info";
   std::string log_format = "text";  ///< "text" or "json"
   std::string access = "auto";      ///< "auto", "open" or "token"

@@ -115,6 +115,13 @@ TEST(DeviceCommand, TakesTheDeviceOfTheSceneUnlessAnOptionNamesOne) {
               exits(1, HasSubstr("/numerics/device: opencl:99 does not exist")));
 }
 
+TEST(DeviceCommand, OfTheServerMustExist) {
+  EXPECT_THAT(run_vat({"serve", "--port", "0", "--device", "opencl:99"}),
+              exits(1, HasSubstr("/device: opencl:99 does not exist")));
+  EXPECT_THAT(run_vat({"serve", "--device", "gpu"}),
+              exits(2, HasSubstr("must be scene, cpu, auto, opencl")));
+}
+
 TEST(DeviceCommand, BenchMeasuresADeviceBesideTheCpu) {
   const TemporaryFolder folder;
   const std::string results = folder.file("results");

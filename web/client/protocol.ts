@@ -39,6 +39,8 @@ export type GrabId = number;
 export type BodyKind = 'liquid' | 'deformable' | 'rigid';
 /** Hashes are comparable if their instruction set is the same */
 export type InstructionSet = 'baseline' | 'avx2' | 'avx512';
+/** OpenCL device that takes the steps; hashes are comparable if it is the same, or without fast on both */
+export type Device = string;
 /** Hash of the state of a simulation */
 export type Hash = string;
 /** Name of a catalogue scene or saved scene, or a scene as in a scene file */
@@ -466,6 +468,15 @@ export interface SessionGuard {
   particle: number;
   /** If false, the session has paused at the last valid state */
   recovered: boolean;
+}
+/** The CPU takes the steps in place of the device */
+export interface SessionDevice {
+  tick: Tick;
+  /** not_on_device: until the device again supports all features of the scene. device_failed: until the next load */
+  code: 'not_on_device' | 'device_failed';
+  /** JSON pointer to the unsupported feature in the scene, or /device */
+  path: string;
+  message: string;
 }
 /** The server ends soon and accepts no new connections, sessions and joins */
 export interface ServerDraining {
@@ -951,6 +962,7 @@ export interface SessionHashResult {
   tick: Tick;
   hash: Hash;
   instruction_set: InstructionSet;
+  device?: Device;
   /** Simulated time [s] */
   time: number;
   /** Number of ticks that the session has run */
@@ -978,6 +990,9 @@ export interface SessionStatsResult {
   /** Including parts of steps and undone steps */
   substeps: number;
   undone_substeps: number;
+  device?: Device;
+  /** Steps that the device has taken; only if a device takes the steps */
+  device_steps?: number;
   /** Wall time of the ticks [s] */
   seconds: number;
   /** [s] */
@@ -1274,6 +1289,7 @@ export interface Events {
   'session.description': SessionDescription;
   'session.status': SessionStatus;
   'session.guard': SessionGuard;
+  'session.device': SessionDevice;
   'server.draining': ServerDraining;
   'session.diverged': SessionDiverged;
   'replay.ended': ReplayEnded;
@@ -1294,6 +1310,7 @@ export const kEventNames = [
   'session.description',
   'session.status',
   'session.guard',
+  'session.device',
   'server.draining',
   'session.diverged',
   'replay.ended',

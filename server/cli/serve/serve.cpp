@@ -20,6 +20,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/device/device_use.h"
 #include "protocol/scene/scene_json.h"
 #include "server/cli/common/command.h"
 #include "server/cli/common/commands.h"
@@ -179,6 +180,11 @@ int serve(const ServeSettings& options, const ServeAccess& access, const Catalog
     settings.instructions = parse_instruction_set(options.instructions).value();
   }
   log_info("instruction set: {}", to_string(settings.instructions));
+  if (options.device != "scene") {
+    settings.device = parse_device(options.device).value();
+    const Status found = check_device(*settings.device);
+    if (!found) return fail("vat serve", found.errors());
+  }
   if (options.data == "none") {
     log_info("sessions exist in memory only (--data FOLDER stores them)");
   } else {

@@ -16,15 +16,33 @@ const std::string* scene_name(const SessionCommand& command) {
   return scene.is_string() ? &scene.get_ref<const std::string&>() : nullptr;
 }
 
+/// Replaces the parameter `scene` of scene.load, and chooses the device of the scene.
+CommandResolution resolve_device(const SessionEnvironment& environment,
+                                 const SessionCommand& command, Json scene) {
+  Json given = command.params;
+  given["scene"] = std::move(scene);
+  auto params = with_device(std::move(given), environment);
+  if (auto* error = std::get_if<RpcError>(&params)) return std::move(*error);
+  std::string text = std::get<Json>(params).dump();
+  return ResolvedCommand{
+      std::move(text),
+      environment.methods.make(kLoadMethod, std::get<Json>(std::move(params))).action};
+}
+
 CommandResolution resolve_scene(const SessionEnvironment& environment,
                                 const SessionCommand& command) {
   auto saved = find_saved_scene(*scene_name(command), environment);
   if (auto* error = std::get_if<RpcError>(&saved)) return std::move(*error);
-  Json params = command.params;
-  params["scene"] = std::get<Json>(std::move(saved));
-  std::string text = params.dump();
-  return ResolvedCommand{std::move(text),
-                         environment.methods.make(kLoadMethod, std::move(params)).action};
+  return resolve_device(environment, command, std::get<Json>(std::move(saved)));
+}
+
+std::variant<CommandEntry, RpcError> to_entry(const CommandResolution& resolution,
+                                              const SessionHistory& history,
+                                              ParticipantNumber participant,
+                                              std::string_view method) {
+  if (const auto* error = std::get_if<RpcError>(&resolution)) return *error;
+  const auto& resolved = std::get<ResolvedCommand>(resolution);
+  return CommandEntry{history.make_entry(participant, method, resolved.params), resolved.action};
 }
 
 CommandResolution resolve_state(const SessionEnvironment& environment, const std::string& session,
@@ -68,16 +86,14 @@ std::variant<CommandEntry, RpcError> make_command_entry(const SessionEnvironment
   const std::string_view method = command.row->name;
   if (names_saved_data(environment, command)) {
     VAT_CHECK(command.resolution != nullptr);
-    if (const auto* error = std::get_if<RpcError>(command.resolution.get())) return *error;
-    const auto& resolved = std::get<ResolvedCommand>(*command.resolution);
     const std::string_view entry_method = method == kLoadMethod ? kLoadMethod : kRestoreEntry;
-    return CommandEntry{history.make_entry(participant, entry_method, resolved.params),
-                        resolved.action};
+    return to_entry(*command.resolution, history, participant, entry_method);
   }
-  if (method == kLoadMethod && scene_name(command) != nullptr) {
-    Json params = command.params;
-    params["scene"] = write_scene(*environment.catalogue.find(*scene_name(command)));
-    return CommandEntry{history.make_entry(participant, method, params.dump()), {}};
+  if (method == kLoadMethod) {
+    const std::string* const name = scene_name(command);
+    const Json scene = name == nullptr ? command.params.at("scene")
+                                       : write_scene(*environment.catalogue.find(*name));
+    return to_entry(resolve_device(environment, command, scene), history, participant, method);
   }
   return CommandEntry{history.make_entry(participant, method, command.params.dump()), {}};
 }

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "core/device/device_use.h"
 #include "core/limits.h"
 #include "server/session/core/scene_loading.h"
 #include "server/storage/sqlite/compression.h"
@@ -58,6 +59,10 @@ ActionResult execute_restore(const Restore& restore, SessionCore& core) {
   auto made = make_simulation(std::get<Scene>(scene), environment, instructions);
   if (auto* error = std::get_if<RpcError>(&made)) return std::move(*error);
   const auto& as_loaded = std::get<Simulation>(made);
+  const DeviceChoice device = device_of(as_loaded.scene(), environment);
+  if (const Status used = resume_device(device, simulation); !used) {
+    return not_allowed("the state needs its device: " + used.errors().front().message);
+  }
   if (const auto excess = core.run().admit(simulation, as_loaded)) return limit_reached(*excess);
   for (const std::uint64_t grab : restore.grabs) {
     if (!simulation.grab_end(grab)) fail("a grab is missing");

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/device/device_use.h"
 #include "core/saved/greatest_size.h"
+#include "core/support/check.h"
 #include "core/support/nearest_name.h"
+#include "server/operations/choose_device.h"
 #include "server/operations/memory_limit.h"
 #include "server/storage/saved_scenes.h"
 
@@ -100,6 +103,52 @@ std::variant<Simulation, RpcError> make_simulation(const Scene& scene,
     if (const auto excess = environment.memory->find_excess()) return limit_reached(*excess);
   }
   return std::move(simulation).value();
+}
+
+std::variant<Scene, RpcError> with_device(Scene scene, const SessionEnvironment& environment) {
+  DeviceChoice device = device_for(environment.device, scene);
+  if (device.is_auto) {
+    auto simulation = make_simulation(scene, environment, environment.instructions);
+    if (auto* error = std::get_if<RpcError>(&simulation)) return std::move(*error);
+    device = choose_device(device, std::get<Simulation>(simulation), environment.runner);
+  }
+  scene.numerics.device.reset();
+  if (!device.is_cpu) scene.numerics.device = device;
+  return scene;
+}
+
+std::variant<Json, RpcError> with_device(Json params, const SessionEnvironment& environment) {
+  const Json::json_pointer place("/scene/numerics/device");
+  if (!environment.device && !params.contains(place)) return params;
+  const std::optional<Level> level = find_level(params.value("level", to_string(Level::normal)));
+  VAT_CHECK(level.has_value());
+  auto read = read_client_scene(params.at("scene"), environment.catalogue, *level);
+  if (auto* error = std::get_if<RpcError>(&read)) return std::move(*error);
+  auto scene = with_device(std::get<Scene>(std::move(read)), environment);
+  if (auto* error = std::get_if<RpcError>(&scene)) return std::move(*error);
+  if (const auto& device = std::get<Scene>(scene).numerics.device) {
+    params[place] = to_text(*device);
+  } else if (params.contains(place)) {
+    params["scene"]["numerics"].erase("device");
+  }
+  return params;
+}
+
+DeviceChoice device_of(const Scene& scene, const SessionEnvironment& environment) {
+  const DeviceChoice device = scene.numerics.device.value_or(DeviceChoice{});
+  // Only a scene of a foreign recording can have an automatic device.
+  return device.is_auto || environment.device == DeviceChoice{} ? DeviceChoice{} : device;
+}
+
+std::variant<Simulation, RpcError> make_on_device(const Scene& scene,
+                                                  const SessionEnvironment& environment,
+                                                  InstructionSet instructions) {
+  auto made = make_simulation(scene, environment, instructions);
+  auto* const simulation = std::get_if<Simulation>(&made);
+  if (simulation == nullptr) return made;
+  const Status used = use_device(device_of(scene, environment), *simulation);
+  if (!used) return scene_refused(used.errors());
+  return made;
 }
 
 }  // namespace vat

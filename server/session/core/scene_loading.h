@@ -53,4 +53,19 @@ std::variant<Simulation, RpcError> make_simulation(const Scene& scene,
                                                    const SessionEnvironment& environment,
                                                    InstructionSet instructions);
 
+/// Returns the scene with the device on which a session computes it. The server's device replaces
+/// the device that the scene names. An automatic choice measures steps, which takes long. The
+/// result has no device for the CPU. Paths of errors begin with the parameter `scene`.
+std::variant<Scene, RpcError> with_device(Scene scene, const SessionEnvironment& environment);
+/// Returns the parameters of scene.load with the result of with_device(). The parameter `scene`
+/// must be a scene.
+std::variant<Json, RpcError> with_device(Json params, const SessionEnvironment& environment);
+/// Returns the device of a scene with the result of with_device(), or the CPU if the server uses no
+/// devices.
+DeviceChoice device_of(const Scene& scene, const SessionEnvironment& environment);
+/// Returns the result of make_simulation(), whose steps are computed on the device of the scene.
+std::variant<Simulation, RpcError> make_on_device(const Scene& scene,
+                                                  const SessionEnvironment& environment,
+                                                  InstructionSet instructions);
+
 }  // namespace vat

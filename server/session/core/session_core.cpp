@@ -95,6 +95,7 @@ bool SessionCore::tick(SteadyClock::time_point now, bool timed) {
   notifier_.prepare_tick();
   const AdvanceReport report = run_.advance();
   notifier_.tell_guard(report);
+  if (report.device_error) leave_device(*report.device_error, now);
   if (report.failed) {
     log_warning("session {}: paused by the guard at tick {}", context_.id, run_.tick());
     set_playing(false);
@@ -104,6 +105,13 @@ bool SessionCore::tick(SteadyClock::time_point now, bool timed) {
   if (report.bodies_changed) start_epoch();
   if (timed) clock_.tick_done(now, run_.tick_seconds());
   return true;
+}
+
+void SessionCore::leave_device(const Error& error, SteadyClock::time_point now) {
+  log_warning("session {}: the CPU continues: {}: {}", context_.id, error.path, error.message);
+  notifier_.tell_device(error);
+  if (!run_.has_lost_device() || history_.log() == nullptr) return;
+  history_.log()->store(history_.moment(), now, true);
 }
 
 CommandBatch SessionCore::prepare(std::span<const ParticipantCommand> commands) const {

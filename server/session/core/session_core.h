@@ -100,6 +100,9 @@ class SessionCore {
 
  private:
   void start_scene();
+  /// Tells that the device has stopped to take the steps. If it has failed, the log alone no longer
+  /// leads to the state.
+  void leave_device(const Error& error, SteadyClock::time_point now);
   ActionResult act(ParticipantNumber participant, const SessionAction& action);
 
   SessionContext context_;

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <boost/asio/thread_pool.hpp>
+#include <optional>
 
+#include "core/scene/device_choice.h"
 #include "core/support/instruction_set.h"
 #include "core/threads/thread_pool.h"
 #include "protocol/scene/scene_json.h"
@@ -42,6 +44,9 @@ struct SessionEnvironment {
   boost::asio::thread_pool* storage_threads = nullptr;
   /// Replicas of stored sessions on other machines. Null: the data folder has the only copy.
   SessionReplicas* replicas = nullptr;
+  /// Device of the steps of new scenes. Absent: the device that the scene names. The CPU also
+  /// continues stored sessions of other devices.
+  std::optional<DeviceChoice> device{};
 };
 
 }  // namespace vat

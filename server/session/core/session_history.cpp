@@ -73,6 +73,7 @@ SessionMoment SessionHistory::moment() const {
           clock_.playing(),
           clock_.speed(),
           participants_.changes(),
+          run_.has_lost_device(),
           write_participants(participants_),
           run_.simulation().snapshot()};
 }

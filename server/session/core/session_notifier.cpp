@@ -129,6 +129,15 @@ void SessionNotifier::tell_guard(const AdvanceReport& report) {
   }
 }
 
+void SessionNotifier::tell_device(const Error& error) {
+  const std::string text = write_event("session.device", {{"tick", run_.tick()},
+                                                          {"code", error.code},
+                                                          {"path", error.path},
+                                                          {"message", error.message}});
+  participants_.send_event(text);
+  recorded_.send_event(text);  // as in start_epoch()
+}
+
 void SessionNotifier::tell_description() {
   if (!description_due_) return;
   const DescriptionText text = description();

@@ -54,6 +54,8 @@ class SessionNotifier {
   /// Stores the velocities before a tick if a client has requested accelerations.
   void prepare_tick();
   void tell_guard(const AdvanceReport& report);
+  /// Tells that the CPU continues in place of a device.
+  void tell_device(const Error& error);
   /// Sends a marked description after a tick. Publishes the state if a frame is due for a client.
   void publish_tick();
   /// Sends all marked items.

@@ -71,6 +71,11 @@ void SessionRun::reset() {
   ++epoch_;
 }
 
+DeviceChoice SessionRun::device() const {
+  if (!simulation_.has_engine()) return {};
+  return as_loaded_.scene().numerics.device.value_or(DeviceChoice{});
+}
+
 AdvanceReport SessionRun::advance() {
   VAT_CHECK(simulation_.steps_per_tick() > 0);
   simulation_.set_observer(profile_.next_observer());

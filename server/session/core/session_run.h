@@ -61,6 +61,13 @@ class SessionRun {
   /// Returns the greatest grab id that was used.
   std::uint64_t last_grab() const { return last_grab_; }
   void set_last_grab(std::uint64_t grab) { last_grab_ = grab; }
+  /// Returns the device of the steps: the device of the loaded scene, or the CPU if the device is
+  /// no longer used.
+  DeviceChoice device() const;
+  /// Returns whether the CPU computes a scene that has a device.
+  bool has_lost_device() const {
+    return as_loaded_.scene().numerics.device.has_value() && !simulation_.has_engine();
+  }
   double tick_seconds() const { return simulation_.scene().numerics.tick; }
 
  private:

@@ -24,6 +24,7 @@ void TickProfile::tick_done(Clock::duration time, const AdvanceReport& report,
   ++totals_.ticks;
   totals_.substeps += report.steps;
   totals_.undone_substeps += report.undone_steps;
+  totals_.device_steps += report.device_steps;
   totals_.time += time;
   totals_.longest_tick = std::max(totals_.longest_tick, time);
   if (is_measured_) count_stages(time);

@@ -21,6 +21,7 @@ class TickProfile {
     std::uint64_t ticks = 0;
     std::uint64_t substeps = 0;  ///< includes repeated and undone substeps
     std::uint64_t undone_substeps = 0;
+    std::uint64_t device_steps = 0;  ///< see AdvanceReport
     Clock::duration time{};
     Clock::duration longest_tick{};
     std::vector<StageClock::Stage> stages;  ///< in the order of their first execution

@@ -118,6 +118,20 @@ describe('a switch of the governor', () => {
   });
 });
 
+describe('the text about a device', () => {
+  it('names the feature that it lacks', () => {
+    const params = {
+      tick: 1,
+      code: 'not_on_device',
+      path: '/bodies/1/kind',
+      message: 'must be liquid on a device',
+    } as const;
+    expect(eventInWords({ event: 'session.device', params })?.text).toBe(
+      'The processor computes in place of the device: must be liquid on a device (/bodies/1/kind).',
+    );
+  });
+});
+
 describe('a file of points for the governor', () => {
   it('is the parameters of session.configure', () => {
     const point = { integrator: 'heun', step: 0.001, error: 0.01, seconds: 0.5 };

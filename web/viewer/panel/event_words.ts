@@ -14,6 +14,11 @@ export function eventInWords(
         level: params.recovered ? 'warning' : 'error',
         text: describeGuard(params, description),
       };
+    case 'session.device':
+      return {
+        level: 'warning',
+        text: `The processor computes in place of the device: ${params.message} (${params.path}).`,
+      };
     case 'session.closed':
       return { level: 'warning', text: `The session was closed: ${params.reason}` };
     case 'control.requested':
