@@ -52,7 +52,7 @@ class Scene {
     const liquid = { body: 1, row: 0, columns: this.columns, valueQuantum: 1, radius: kRadius };
     this.joined.update([liquid]);
     this.froth.follow([liquid], this.joined, {
-      quantum: kGrid.quantum,
+      ...kGrid,
       seconds,
       height: kHeight,
     });
@@ -128,7 +128,7 @@ it('follows particles by their numbers', () => {
     const joined = new JoinedColumns();
     const liquid = { body: 1, row: 0, columns, valueQuantum: 1, radius: kRadius };
     joined.update([liquid]);
-    froth.follow([liquid], joined, { quantum: 0.001, seconds, height: kHeight });
+    froth.follow([liquid], joined, { ...kGrid, seconds, height: kHeight });
     return frothOf(joined).map(({ foam }) => foam);
   };
   foamOf([3, 7], [0, 5000], 0);

@@ -74,8 +74,8 @@ export class World {
   /** Liquid and deformable bodies that are drawn together. */
   private readonly grids: JoinedGrids;
   private readonly drawing: LiquidDrawing;
-  /** Unit of the positions in the last frame [m]. */
-  private quantum = 1;
+  /** The grid of the positions in the last frame. */
+  private grid: Pick<FrameHeader, 'origin' | 'quantum'> = { origin: [0, 0, 0], quantum: 1 };
   /** Called after changes between frames. */
   onChange: () => void = () => undefined;
   /** Time of the last frame [s]. */
@@ -126,7 +126,7 @@ export class World {
     const liquids = grids.filter(({ view }) => view.description.kind === 'liquid');
     this.drawing.update(
       liquids.map(({ view, row }) => ({ row, ...view.gridParticles })),
-      { quantum: this.quantum, seconds: this.shared.look.interval.value, height: this.height },
+      { ...this.grid, seconds: this.shared.look.interval.value, height: this.height },
     );
   }
 
@@ -188,7 +188,7 @@ export class World {
     const seconds = frame.header.time - (this.time ?? frame.header.time);
     this.time = frame.header.time;
     this.shared.look.interval.value = seconds;
-    this.quantum = frame.header.quantum;
+    this.grid = frame.header;
     for (const block of frame.blocks) {
       if (block.kind === BodyKind.vat) this.moveVat(block.offset);
       else this.showBlock(block, frame.header, seconds);

@@ -1,27 +1,24 @@
 import { AddEquation, CustomBlending, GLSL3, MaxEquation, OneFactor, ShaderMaterial } from 'three';
 import { kImpostorHit, kImpostorVertexShader, kSquareOfParticle } from '../particles/impostor';
 import type { DrawnUniforms } from '../particles/impostor';
+import { kEllipsoidHit, kEllipsoidVertexShader } from './ellipsoid';
 import { kWalls } from './wall_uniforms';
 import type { WallUniforms } from './wall_uniforms';
 import type { BehindUniforms } from './fluid_pass';
-
-/** Drawn radius / particle radius. The spheres overlap and form a closed surface. */
-const kSize = 1.4;
 
 /** Points that are nearer to a wall, in particle radii, are drawn at the wall. */
 const kAtWall = 1.2;
 
 const kDepth = /* glsl */ `
     if (inside <= 0.0) discard;
-    float nearer = along - extent * sqrt(inside);
-    float farther = along + extent * sqrt(inside);
     vec3 way = transpose(mat3(viewMatrix)) * ray;
     vec3 middle = transpose(mat3(viewMatrix)) * view_center + cameraPosition;
-    if (all(greaterThan(middle, wall_low)) && all(lessThan(middle, wall_high))) {
+    // Particles can be in the walls by a part of their radius.
+    if (all(greaterThan(middle, wall_low - size)) && all(lessThan(middle, wall_high + size))) {
       Entry entry = entry_of(cameraPosition, way);
       if (farther < entry.at || nearer > exit_of(cameraPosition, way)) discard;
       float inward = (nearer - entry.at) * -dot(way, entry.normal);
-      if (entry.at > 0.0 && inward < ${kAtWall / kSize} * extent) nearer = entry.at;
+      if (entry.at > 0.0 && inward < ${kAtWall} * size) nearer = entry.at;
     }
     vec3 point = nearer * ray;
     gl_FragDepth = depth_of(point);
@@ -48,7 +45,7 @@ const kThickness = /* glsl */ `
   }
 `;
 
-/** Writes the view distance of the nearest point of each sphere [m], coverage and foam. */
+/** Writes the view distance of the nearest point of each ellipsoid [m], coverage and foam. */
 export function fluidDepthMaterial(
   body: DrawnUniforms,
   radius: number,
@@ -56,9 +53,9 @@ export function fluidDepthMaterial(
 ): ShaderMaterial {
   return new ShaderMaterial({
     glslVersion: GLSL3,
-    vertexShader: kImpostorVertexShader,
-    fragmentShader: `out vec4 nearest;\nflat in float foam;\nflat in float lone;\n${kWalls}${kImpostorHit}${kDepth}`,
-    uniforms: { ...body, ...walls, radius: { value: kSize * radius } },
+    vertexShader: kEllipsoidVertexShader,
+    fragmentShader: `out vec4 nearest;\n${kWalls}${kEllipsoidHit}${kDepth}`,
+    uniforms: { ...body, ...walls, radius: { value: radius } },
   });
 }
 

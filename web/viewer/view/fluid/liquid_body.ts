@@ -1,3 +1,4 @@
+import type { Vector } from '../../../client/index';
 import type { GridBody } from '../particles/joined_columns';
 
 /** A liquid body. */
@@ -8,9 +9,10 @@ export interface LiquidBody extends GridBody {
   radius: number;
 }
 
-/** The scale and the time of a frame. */
+/** The grid and the time of a frame. */
 export interface LiquidTime {
-  /** Unit of the positions [m]. */
+  /** The coordinate 0 of positions [m], and their unit [m]. */
+  origin: Readonly<Vector>;
   quantum: number;
   /** Time since the previous frame [s]. */
   seconds: number;

@@ -1,5 +1,5 @@
 import { Color, Group, Mesh } from 'three';
-import type { ShaderMaterial } from 'three';
+import type { ShaderMaterial, Vector3 } from 'three';
 import { kLayers } from '../base/layers';
 import type { LiquidStyle } from '../base/liquid_style';
 import type { WallUniforms } from './wall_uniforms';
@@ -10,6 +10,7 @@ import { splatDepthMaterial, splatMaterial } from '../particles/splat_material';
 import { fluidDepthMaterial, fluidShadowMaterial, fluidThicknessMaterial } from './fluid_particles';
 import type { BehindUniforms } from './fluid_pass';
 import { Froth } from './froth';
+import { SurfaceShapes } from './surface_shapes';
 import type { LiquidBody, LiquidTime } from './liquid_body';
 
 /** The shared uniforms of liquids. */
@@ -24,6 +25,8 @@ export class LiquidDrawing {
   readonly group = new Group();
   private readonly joined = new JoinedColumns();
   private readonly froth = new Froth();
+  private readonly shapes = new SurfaceShapes();
+  private readonly walls: WallUniforms;
   private readonly uniforms;
   private readonly meshes: { mesh: Mesh; style: LiquidStyle }[] = [];
   private drawn: LiquidStyle = 'splats';
@@ -32,6 +35,7 @@ export class LiquidDrawing {
 
   constructor({ look, behind, walls }: LiquidUniforms) {
     this.uniforms = bodyUniforms(new Color(), look, true);
+    this.walls = walls;
     const uniforms = { ...this.uniforms, ...this.joined.uniforms };
     this.add(splatDepthMaterial(uniforms, 1), 'splats', 'splats', 1);
     this.add(splatMaterial(uniforms, 1), 'splats', 'splats', 2);
@@ -57,12 +61,24 @@ export class LiquidDrawing {
     }
     if (drawn !== 'fluid' || this.hasFroth) return;
     this.froth.follow(liquids, joined, time);
+    this.shapeSurface(liquids, time);
     this.hasFroth = true;
   }
 
   /** Forgets the foam, before another scene. */
   clear(): void {
     this.froth.clear();
+  }
+
+  private shapeSurface(liquids: readonly LiquidBody[], { origin, quantum }: LiquidTime): void {
+    const { center, shapes } = this.joined.columns;
+    const count = liquids.reduce((sum, { columns }) => sum + columns.count, 0);
+    const radius = Math.max(...liquids.map((liquid) => liquid.radius)) / quantum;
+    const onGrid = ({ value }: { value: Vector3 }): number[] =>
+      value.toArray().map((x, q) => (x - origin[q]!) / quantum);
+    const walls = { low: onGrid(this.walls.wall_low), high: onGrid(this.walls.wall_high) };
+    this.shapes.write(center.values, count, radius, walls, shapes.values);
+    shapes.changed();
   }
 
   private add(

@@ -18,6 +18,8 @@ export interface GridBody {
 interface JoinedTexels extends CopiedColumns {
   /** See Froth. */
   froth: Texels<Uint8Array>;
+  /** See SurfaceShapes. */
+  shapes: Texels<Uint32Array>;
 }
 
 /** The graphics columns of several bodies, one after the other, for one draw call. */
@@ -78,6 +80,7 @@ export class JoinedColumns {
     uniforms.name_texels.value = columns.names.texture;
     uniforms.value_texels.value = columns.shown.texture;
     uniforms.froth_texels.value = columns.froth.texture;
+    uniforms.shape_texels.value = columns.shapes.texture;
   }
 }
 
@@ -88,5 +91,6 @@ function texelsFor(count: number): JoinedTexels {
     names: Texels.names(count),
     shown: Texels.shown(count),
     froth: Texels.froth(count),
+    shapes: Texels.shapes(count),
   };
 }

@@ -1,6 +1,7 @@
 import {
   DataTexture,
   IntType,
+  RGBAIntegerFormat,
   RGFormat,
   RGIntegerFormat,
   RedIntegerFormat,
@@ -15,7 +16,7 @@ import type { IUniform, PixelFormat, TextureDataType } from 'three';
  * Texels in a row, a power of two. The smallest permitted limit of WebGL2, 2048 rows, is sufficient
  * for 524 288 particles.
  */
-const kRow = 256;
+export const kRow = 256;
 
 /** three.js has no constant for this format, and accepts the name of a constant of WebGL2. */
 const kRgbIntegers = 'RGB_INTEGER' as unknown as PixelFormat;
@@ -58,6 +59,11 @@ export class Texels<Values extends Uint8Array | Uint16Array | Uint32Array | Int3
     return new Texels(Uint8Array, 2, particles, RGFormat, UnsignedByteType);
   }
 
+  /** Shapes of particles at the surface of a liquid; see SurfaceShapes. */
+  static shapes(particles: number): Texels<Uint32Array> {
+    return new Texels(Uint32Array, 4, particles, RGBAIntegerFormat, UnsignedIntType);
+  }
+
   /** The number of particles for which it has space. */
   get room(): number {
     return this.values.length / this.size;
@@ -84,6 +90,7 @@ export const kNoValues = Texels.shown(0).texture;
 const kNoPlaces = Texels.places(0).texture;
 const kNoNames = Texels.names(0).texture;
 const kNoFroth = Texels.froth(0).texture;
+const kNoShapes = Texels.shapes(0).texture;
 
 /** The textures of the particles of a draw call. */
 export interface ParticleUniforms extends Record<string, IUniform> {
@@ -96,6 +103,7 @@ export interface ParticleUniforms extends Record<string, IUniform> {
   name_texels: IUniform<DataTexture>;
   value_texels: IUniform<DataTexture>;
   froth_texels: IUniform<DataTexture>;
+  shape_texels: IUniform<DataTexture>;
 }
 
 export function particleUniforms(): ParticleUniforms {
@@ -106,6 +114,7 @@ export function particleUniforms(): ParticleUniforms {
     name_texels: { value: kNoNames },
     value_texels: { value: kNoValues },
     froth_texels: { value: kNoFroth },
+    shape_texels: { value: kNoShapes },
   };
 }
 
