@@ -1,4 +1,4 @@
-import { Matrix4, ShaderMaterial, Vector3 } from 'three';
+import { Color, Matrix4, ShaderMaterial, Vector3 } from 'three';
 import { kEnvironment } from '../base/environment';
 import { kSun } from '../base/light';
 import { kScreenVertexShader } from '../base/screen';
@@ -23,6 +23,7 @@ const kSurface = /* glsl */ `
   uniform float paint;
   uniform float radius;
   uniform bool shows_normals;
+  uniform vec3 ground;
 
   vec3 ray_at(vec2 place) {
     vec4 far = projectionMatrixInverse * vec4(2.0 * place - 1.0, 1.0, 1.0);
@@ -116,12 +117,13 @@ const kLight = /* glsl */ `
     vec3 body = through * passed * (1.0 - 0.5 * murk) + own * murk * mix(0.8, 1.0, paint);
 
     float facing = clamp(dot(normal, -ray), 0.0, 1.0);
-    float mirror = (0.05 + 0.95 * pow(1.0 - facing, 4.0)) * mix(1.0, 0.4, paint);
+    float mirror = (0.02 + 0.98 * pow(1.0 - facing, 5.0)) * mix(1.0, 0.4, paint);
     vec3 bounced = reflect(to_world * ray, n);
-    vec3 around = environment(bounced, 0.05);
+    // Below the horizon, the surroundings are the ground of the picture.
+    vec3 around = mix(ground, environment(bounced, 0.05), smoothstep(-0.1, 0.1, bounced.z));
     float shine = pow(max(dot(bounced, ${kSun}), 0.0), 250.0);
     vec3 light = mix(body, around, mirror) + 1.6 * shine * shade * (1.0 - 0.6 * paint);
-    vec3 white = vec3(0.93, 0.96, 0.98) * (0.62 + 0.2 * sky + 0.22 * toward);
+    vec3 white = vec3(0.96, 0.98, 1.0) * (0.74 + 0.14 * sky + 0.14 * toward);
     return mix(light, white, foam * (1.0 - 0.7 * glass) * (1.0 - paint)); // foam is on the surface
   }
 
@@ -176,6 +178,7 @@ export function fluidCompositeMaterial(sun: SunUniforms, walls: WallUniforms): S
       paint: { value: 0 },
       radius: { value: 1 },
       shows_normals: { value: false },
+      ground: { value: new Color() },
     },
   });
 }

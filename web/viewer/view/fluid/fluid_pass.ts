@@ -184,6 +184,7 @@ export class FluidPass {
     uniforms.paint!.value = look.paint;
     uniforms.shows_normals!.value = look.showsNormals;
     uniforms.radius!.value = look.radius;
+    uniforms.ground!.value = this.clearColour;
     this.smoother.visible = false;
     this.result.visible = true;
     renderer.setRenderTarget(null);
