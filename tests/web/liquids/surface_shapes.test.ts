@@ -119,6 +119,13 @@ it('has the same shapes at a wall as away from it', () => {
   for (const axis of below.axes) expect(axis).toBeCloseTo(kSphere, 1);
 });
 
+it('does not move a single particle towards a wall', () => {
+  const walls = { ...kNoWalls, low: [-kFar, -0.9 * kRadius, -kFar] };
+  const { axes, shift } = shapesOf([[0, 0, 0]], walls)[0]!;
+  for (const way of shift) expect(way).toBeCloseTo(0, kDigits);
+  for (const axis of axes) expect(axis).toBeLessThan(1);
+});
+
 it('makes no shapes of no particles', () => {
   expect(shapesOf([])).toEqual([]);
 });

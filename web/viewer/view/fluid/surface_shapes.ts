@@ -130,7 +130,8 @@ export class SurfaceShapes {
         const dy = scale * (sorted[3 * p + 1]! - oy);
         const dz = scale * (sorted[3 * p + 2]! - oz);
         const remembered = isCandidate[index[p]!] ? index[p]! : -1;
-        this.add(remembered, dx, dy, dz);
+        const weight = this.add(dx, dy, dz);
+        if (weight > 0 && remembered >= 0) this.remember(remembered, dx, dy, dz, weight);
         if (hasMirrors) this.addImages(remembered, [dx, dy, dz], mirrors);
       }
     }
@@ -142,10 +143,10 @@ export class SurfaceShapes {
     return sum;
   }
 
-  /** Adds a neighbour at a distance that is relative to the reach. */
-  private add(j: number, dx: number, dy: number, dz: number): void {
+  /** Adds a neighbour at a distance that is relative to the reach. Returns its weight. */
+  private add(dx: number, dy: number, dz: number): number {
     const rest = 1 - dx * dx - dy * dy - dz * dz;
-    if (rest <= 0) return;
+    if (rest <= 0) return 0;
     const { moments } = this;
     const w = rest * rest;
     moments[0]! += w;
@@ -158,10 +159,13 @@ export class SurfaceShapes {
     moments[7]! += w * dx * dy;
     moments[8]! += w * dx * dz;
     moments[9]! += w * dy * dz;
-    if (j >= 0) this.remember(j, dx, dy, dz, w);
+    return w;
   }
 
-  /** Adds the mirror images of a neighbour. */
+  /**
+   * Adds the mirror images of a neighbour. They have its distances in `near`, so that they do not
+   * displace single particles towards a wall.
+   */
   private addImages(
     j: number,
     [dx, dy, dz]: readonly [number, number, number],
@@ -174,7 +178,8 @@ export class SurfaceShapes {
         const y = b < 0 ? dy : along[b]! - dy;
         if (Math.abs(y) >= 1) continue;
         for (let a = c < 0 && b < 0 ? 0 : -1; a < across.length; ++a) {
-          this.add(j, a < 0 ? dx : across[a]! - dx, y, z);
+          const weight = this.add(a < 0 ? dx : across[a]! - dx, y, z);
+          if (weight > 0 && j >= 0) this.remember(j, dx, dy, dz, weight);
         }
       }
     }
