@@ -2,6 +2,7 @@ import { afterAll, describe, expect, it } from 'vitest';
 import type { Scene } from '../../web/client/index';
 import {
   deepestDent,
+  downward,
   maskOf,
   meanChange,
   normalDeviation,
@@ -71,6 +72,20 @@ const kSheet = sceneOf(
   kSpacing,
   [1.6, 0.5, 0.6],
 );
+/** A column of liquid stands on a pool. */
+const kColumn: Scene = (() => {
+  const scene = sceneOf(
+    'column',
+    { type: 'box', center: [0.8, 0.4, 0.1], size: [1.6, 0.8, 0.2] },
+    0.04,
+    [1.6, 0.8, 0.8],
+  );
+  const { bodies } = scene;
+  const shape: Liquid = { type: 'box', center: [0.8, 0.24, 0.42], size: [0.2, 0.2, 0.44] };
+  return { ...scene, bodies: [...bodies, { ...bodies[0]!, name: 'column', shape }] };
+})();
+/** The region of its picture where the outlines of column and pool meet. */
+const kFoot = { left: 0.3, top: 0.25, right: 0.66, bottom: 0.6 };
 const kDrop = sceneOf(
   'drop',
   { type: 'sphere', center: [0.5, 0.5, 0.6], radius: 0.24 },
@@ -150,6 +165,12 @@ it('draws a sheet of 10 000 particles without dents', async () => {
   const spacing = (kSpacing / 1.6) * (shape.width / 1.08);
   const dent = deepestDent(outlineOf(shape), 4 * spacing) / spacing;
   expect(note('deepest dent of a sheet', dent, 'spacings')).toBeLessThan(0.5);
+});
+
+it('draws no overhang where a column meets a pool behind it', async () => {
+  await show(kColumn, 6, 'liquid:fluid,colour:normals');
+  const pixels = await fullPixelsOf(visits.viewer);
+  expect(note('normals that point down', downward(pixels, kFoot), 'pixels')).toBeLessThan(200);
 });
 
 it('draws a falling drop round', async () => {

@@ -95,3 +95,20 @@ export function unroundness({ width, height, isLiquid }: Mask): number {
   const mean = diameters.reduce((sum, value) => sum + value, 0) / diameters.length;
   return Math.max(...diameters.map((value) => Math.abs(value / mean - 1)));
 }
+
+/** Normals with a smaller vertical coordinate point down. */
+const kDown = -0.4;
+
+/** Returns the number of pixels in a region whose normals point down. */
+export function downward(
+  { width, height, data }: FullPixels,
+  { left, top, right, bottom }: Region,
+): number {
+  let count = 0;
+  for (let y = Math.ceil(top * height); y < bottom * height; ++y) {
+    for (let x = Math.ceil(left * width); x < right * width; ++x) {
+      if ((2 * data[4 * (y * width + x) + 2]!) / 255 - 1 < kDown) ++count;
+    }
+  }
+  return count;
+}

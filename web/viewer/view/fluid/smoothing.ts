@@ -4,11 +4,17 @@ import { kScreenVertexShader } from '../base/screen';
 /** Maximum samples on each side. Close views are smoothed less. */
 const kMostSteps = 36;
 
-/** Larger depth differences, in particle radii, belong to another sheet of liquid. */
-const kRange = 8;
+/**
+ * Distances of the surface from a straight line [particle radii] that are smoothed: one standard
+ * deviation. Larger ones are steps between sheets of liquid.
+ */
+const kRange = 2.5;
 
 /** Width of the blur of the outline [particle radii]; it removes the outlines of particles. */
 const kOutline = 0.8;
+
+/** The power of the weights of samples beyond an outline, by which the nearest ones dominate. */
+const kNearest = '12.0';
 
 const kFragmentShader = /* glsl */ `
   in vec2 at;
@@ -35,9 +41,6 @@ const kFragmentShader = /* glsl */ `
     float spread = max(sigma * rows, 0.5);
     float edge = max(${kOutline} * rows, 0.5);
     int steps = min(int(ceil(1.8 * spread)), ${kMostSteps});
-    float narrow = ${kRange}.0 * radius;
-    float near = is_wet ? middle.r - narrow : 0.0;
-    float far = is_wet ? middle.r + narrow : 1e9;
     float weights = is_wet ? 1.0 : 0.0;
     float sum = weights * middle.r;
     float foam = weights * middle.b;
@@ -52,21 +55,21 @@ const kFragmentShader = /* glsl */ `
       cover += part * (a.g + b.g);
       covers += 2.0 * part;
       if (!is_wet) {
-        // Continues the surface beyond its outline.
-        vec2 used = weight * step(1e-6, vec2(a.r, b.r));
+        // Continues the nearest sheet beyond its outline.
+        vec2 used = pow(weight, ${kNearest}) * step(1e-6, vec2(a.r, b.r));
         sum += used.x * a.r + used.y * b.r;
         foam += used.x * a.b + used.y * b.b;
         weights += used.x + used.y;
         continue;
       }
       // Both samples or none, so that an edge on one side does not displace the surface.
-      float nearest = min(a.r, b.r);
-      if (nearest <= 0.0 || nearest < near) continue;
-      sum += weight * (min(a.r, far) + min(b.r, far));
+      if (min(a.r, b.r) <= 0.0) continue;
+      // The mean does not depend on the slope, which is large at grazing angles.
+      float bend = (0.5 * (a.r + b.r) - middle.r) / (${kRange} * radius);
+      weight *= exp(-0.5 * bend * bend);
+      sum += weight * (a.r + b.r);
       foam += weight * (a.b + b.b);
       weights += 2.0 * weight;
-      near = min(near, nearest - narrow);
-      if (max(a.r, b.r) < far) far = max(far, max(a.r, b.r) + narrow);
     }
     vec2 surface = weights > 0.0 ? vec2(sum, foam) / weights : vec2(0.0);
     smoothed = vec4(surface.x, blurs_outline ? cover / covers : middle.g, surface.y, 0.0);
