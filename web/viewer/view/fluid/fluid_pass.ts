@@ -58,8 +58,9 @@ export interface FluidLook {
 /**
  * Draws liquids as one surface, in three steps: the smoothed depth of the nearest particle per
  * pixel, thickness and colour summed along the ray, and refraction, absorption and reflection.
- * After S. Green, "Screen space fluid rendering for games" (GDC 2010), with the filter of N. Truong
- * and C. Yuksel, "A narrow-range filter for screen-space fluid rendering" (2018).
+ * After S. Green, "Screen space fluid rendering for games" (GDC 2010). The filter preserves slopes, as
+ * that of N. Truong and C. Yuksel, "A narrow-range filter for screen-space fluid rendering" (2018),
+ * but has no thresholds.
  */
 export class FluidPass {
   private readonly behind = new WebGLRenderTarget(1, 1, {
