@@ -30,6 +30,12 @@ const kSurface = /* glsl */ `
     return far.xyz / -far.z;
   }
 
+  /** Returns the place of the object with this depth that the pixel shows. */
+  vec3 window_at(float window_depth) {
+    vec4 place = projectionMatrixInverse * vec4(2.0 * vec3(at, window_depth) - 1.0, 1.0);
+    return place.xyz / place.w;
+  }
+
   vec4 surface_at(ivec2 place) {
     return texelFetch(depth, clamp(place, ivec2(0), textureSize(depth, 0) - 1), 0);
   }
@@ -124,7 +130,7 @@ const kLight = /* glsl */ `
     float shine = pow(max(dot(bounced, ${kSun}), 0.0), 250.0);
     vec3 light = mix(body, around, mirror) + 1.6 * shine * shade * (1.0 - 0.6 * paint);
     vec3 white = vec3(0.96, 0.98, 1.0) * (0.74 + 0.14 * sky + 0.14 * toward);
-    return mix(light, white, foam * (1.0 - 0.7 * glass) * (1.0 - paint)); // foam is on the surface
+    return mix(light, white, foam * (1.0 - glass) * (1.0 - paint)); // foam is not at the glass
   }
 
   void main() {
@@ -145,12 +151,16 @@ const kLight = /* glsl */ `
       float front = 0.5 * clip.z / clip.w + 0.5;
       if (front < window_depth) {
         sum /= min(max(surface.g, ${kOutline}) + 0.1, 1.0); // the blur has spread the edge
+        // Particles in a narrow gap before an object are wider than the gap.
+        float room = distance(window_at(window_depth), point);
+        sum *= min(1.0, room / sum.w);
+        float foam = surface.b * min(1.0, 0.5 * room / radius);
         if (shows_normals) {
           gl_FragDepth = front;
           gl_FragColor = vec4(0.5 + 0.5 * transpose(mat3(viewMatrix)) * normal, 1.0);
           return;
         }
-        light = mix(light, light_of(point, normal, sum, surface.b, front, glass), cover);
+        light = mix(light, light_of(point, normal, sum, foam, front, glass), cover);
         window_depth = front;
       }
     }
