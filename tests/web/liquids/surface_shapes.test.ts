@@ -2,6 +2,7 @@ import { describe, expect, it } from 'vitest';
 import {
   SurfaceShapes,
   kMostShape,
+  kMostShaped,
   kMostShift,
   kShapeNumbers,
   kSphere,
@@ -128,4 +129,17 @@ it('does not move a single particle towards a wall', () => {
 
 it('makes no shapes of no particles', () => {
   expect(shapesOf([])).toEqual([]);
+});
+
+it('keeps spheres if there are many', () => {
+  const size: Place = [kMostShaped / 200, 100, 2];
+  for (const [places, isShaped] of [
+    [lattice(size), true],
+    [[...lattice(size), [0, 0, 4 * kSpacing] as Place], false],
+  ] as const) {
+    expect(places.length > kMostShaped).toBe(!isShaped);
+    const [, , height] =
+      shapesOf(places)[indexOf(places, [100 * kSpacing, 50 * kSpacing, 0])]!.axes;
+    expect(Math.abs(height! - kSphere) > 0.01).toBe(isShaped);
+  }
 });

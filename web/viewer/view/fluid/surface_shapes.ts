@@ -12,6 +12,9 @@ const kFull = 0.8;
 /** Limits of the weight within the reach, relative to that within a liquid, at the surface. */
 const kSurface = [0.78, 0.95] as const;
 
+/** More particles are drawn as spheres, because their shapes would take most of a picture's time. */
+export const kMostShaped = 40_000;
+
 /** Semi-axes of an ellipsoid within the liquid, and their reduction without neighbours [radii]. */
 export const kSphere = 1.4;
 const kFlat = 0.75;
@@ -79,10 +82,11 @@ export class SurfaceShapes {
   ): number[] {
     const candidates: number[] = [];
     const full = new Uint8Array(grid.cells); // 0: unknown, 1: false, 2: true
+    const isTooMany = count > kMostShaped;
     const [first, second, third, none] = pack([kSphere, kSphere, kSphere, 0, 0, 0], [0, 0, 0]);
     for (let i = 0; i < count; ++i) {
       const cell = grid.cellOf[i]!;
-      if (full[cell] === 0) {
+      if (full[cell] === 0 && !isTooMany) {
         const room = grid.volumeAround(cell, walls) / (2 * radius) ** 3;
         full[cell] = grid.countAround(cell) > kFull * room ? 2 : 1;
       }
