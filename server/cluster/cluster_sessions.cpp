@@ -285,7 +285,7 @@ void ClusterNode::drain(std::chrono::milliseconds time) {
     std::size_t count = 0;
   };
   const auto left = std::make_shared<Left>();
-  const auto end = [left](const auto&) {
+  const Moved end = [left](const std::optional<std::string>&) {
     const std::lock_guard lock(left->mutex);
     --left->count;
     left->changed.notify_all();
@@ -308,7 +308,7 @@ void ClusterNode::drain(std::chrono::milliseconds time) {
     }
     const bool waits =
         wait_for_move(number, end) || (!names.empty() && !move(number, names.front(), end));
-    if (!waits) end(0);
+    if (!waits) end({});
   }
   std::unique_lock lock(left->mutex);
   left->changed.wait_for(lock, time, [&] { return left->count == 0; });
