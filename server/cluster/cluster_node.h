@@ -100,8 +100,8 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   };
   using Moved = std::function<void(const std::optional<std::string>& url)>;
   /// Hands a session over to another node. Then calls `done` with the URL of that node, or with
-  /// nothing if the directory could not be changed. Returns a reason against the hand-over, if
-  /// there is one.
+  /// nothing if the node cannot change the directory. If the node refuses the hand-over, returns
+  /// the reason, and does not call `done`.
   std::optional<MoveRefusal> move(std::uint64_t session, const std::string& node, Moved done);
   /// Hands all sessions over to other nodes. Returns after `time`, or when all are stored.
   void drain(std::chrono::milliseconds time);
@@ -150,7 +150,7 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   void release(std::uint64_t session, const std::string& successor);
   /// Calls the functions that wait for the hand-over of the session.
   void end_move(std::uint64_t session, const std::optional<std::string>& url);
-  /// Calls `done` after a hand-over that has begun. Returns false if there is none.
+  /// Calls `done` after the hand-over of the session. Returns false if no hand-over has begun.
   bool wait_for_move(std::uint64_t session, const Moved& done);
   /// Changes the entry of a hosted session. Throws NatsError if the session is lost.
   LocatedSession update(std::uint64_t session,
