@@ -15,6 +15,14 @@ const kFlags = [
   '--enable-unsafe-swiftshader',
 ];
 
+/** Flags of tests. They take two thirds of the time that the software GL of Chromium takes. */
+export const kTestFlags = [
+  '--use-angle=gl-egl', // Mesa's software GL, which keeps compiled shaders for the next page
+  '--ignore-gpu-blocklist',
+  // Most code of a page runs seldom in a test, so optimising it costs more time than it saves.
+  '--js-flags=--no-maglev --no-turbofan',
+];
+
 /** Limit of every wait [ms]. Only a fault reaches it, also on a slow, busy machine. */
 export const kDeadlineMs = 120_000;
 
@@ -34,7 +42,7 @@ export function launchOptions(): LaunchOptions {
  * Starts Chromium. It composes pages without the software GL, which makes screenshots faster but
  * blocks the page for longer.
  */
-export function launchChromium(): Promise<Browser> {
+export function launchChromium(more: readonly string[] = []): Promise<Browser> {
   const { args = [], ...options } = launchOptions();
-  return chromium.launch({ ...options, args: [...args, '--disable-gpu-compositing'] });
+  return chromium.launch({ ...options, args: [...args, ...more, '--disable-gpu-compositing'] });
 }

@@ -1,6 +1,6 @@
 import type { Browser } from 'playwright-core';
 import { inject } from 'vitest';
-import { launchChromium } from './chromium';
+import { kTestFlags, launchChromium } from './chromium';
 import type { Host } from './server';
 import { Viewer } from './viewer';
 import type { Look } from './viewer';
@@ -9,7 +9,7 @@ let browser: Promise<Browser> | undefined;
 
 /** The Chromium process of the whole suite. It ends with the process of the tests. */
 export function sharedBrowser(): Promise<Browser> {
-  browser ??= launchChromium();
+  browser ??= launchChromium(kTestFlags);
   return browser;
 }
 

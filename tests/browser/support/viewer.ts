@@ -5,7 +5,7 @@ import type {
   Page,
   Request,
 } from 'playwright-core';
-import { kDeadlineMs, launchChromium } from './chromium';
+import { kDeadlineMs, kTestFlags, launchChromium } from './chromium';
 import { recordPage } from './transcript';
 
 /** Smaller differences of a colour channel may result from rounding. */
@@ -58,7 +58,7 @@ export class Viewer {
     { before, isUnrecorded, hasBar, ...look }: Look = {},
     shared?: Browser,
   ): Promise<Viewer> {
-    const browser = shared ?? (await launchChromium());
+    const browser = shared ?? (await launchChromium(kTestFlags));
     const page = await browser.newPage({ viewport: { width: 1000, height: 640 }, ...look });
     const viewer = new Viewer(page, url, browser, shared === undefined);
     await page.addInitScript(addBrake);
