@@ -12,17 +12,20 @@ namespace vat {
 namespace {
 
 // The tolerances of the error of w, in the norm of M.
-constexpr Real kTolerance = 1e-2;          // relative to w
+constexpr Real kTolerance = 1e-2;          // relative to v - from
 constexpr Real kVelocityTolerance = 3e-4;  // relative to the velocities minus their mean
 constexpr int kMaxDampingPasses = 200;
 
 /// The constants of the solve.
 struct Equation {
   const StepContext& context;
+  const std::vector<Vec3>& from;  ///< velocities before the forces act, by particle
   Real dt;
   DampingScratch& scratch;
 
   const Model& model() const { return context.model; }
+  /// Returns the velocity of a particle before the forces act, relative to `at`.
+  Vec3 past_velocity(std::size_t i) const { return from[i] - context.configuration.velocity[i]; }
 };
 
 void resize(const Model& model, Motion& motion) {
@@ -101,10 +104,8 @@ void apply_damping(const Equation& eq, Motion& w, Motion& force) {
   });
 }
 
-/// r = dt f + M v with the velocities v by particle, p = M^-1 r, w = 0, D w = 0; returns <r, M^-1
-/// r>.
-template <class F>
-Real start(const Equation& eq, const Forces& forces, F&& given_velocity) {
+/// r = dt f + M (from - at), p = M^-1 r, w = 0, D w = 0; returns <r, M^-1 r>.
+Real start(const Equation& eq, const Forces& forces) {
   const Model& model = eq.model();
   const std::vector<DampedBody>& bodies = eq.scratch.bodies;
   Motion& w = eq.scratch.change;
@@ -112,7 +113,7 @@ Real start(const Equation& eq, const Forces& forces, F&& given_velocity) {
   Motion& r = eq.scratch.residual;
   Motion& p = eq.scratch.direction;
   Real error = sum_over_particles(eq, eq.scratch.partial_sums, [&](std::size_t i, Real& sum) {
-    r.particle[i] = eq.dt * forces.particle[i] + model.mass[i] * given_velocity(i);
+    r.particle[i] = eq.dt * forces.particle[i] + model.mass[i] * eq.past_velocity(i);
     p.particle[i] = model.inverse_mass[i] * r.particle[i];
     w.particle[i].setZero();
     force.particle[i].setZero();
@@ -161,7 +162,7 @@ DampingSums advance_along(const Equation& eq, Real length) {
     force.particle[i] += length * q.particle[i];
     r.particle[i] -= length * (model.mass[i] * p.particle[i] - eq.dt * q.particle[i]);
     sum.error += model.inverse_mass[i] * r.particle[i].squaredNorm();
-    sum.size += model.mass[i] * w.particle[i].squaredNorm();
+    sum.size += model.mass[i] * (w.particle[i] - eq.past_velocity(i)).squaredNorm();
   });
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const DampedBody& body = bodies[b];
@@ -317,7 +318,7 @@ bool must_solve_own_damping(const Model& model, Real dt) {
 void solve_damping(const ForceModel& f, const Configuration& from, Configuration& at, Real time,
                    Real dt, bool viscosity, Forces& forces, DampingScratch& scratch) {
   const StepContext context{f.model, f.controls, time, f.step, at, forces, f.work, f.runner};
-  const Equation eq{context, dt, scratch};
+  const Equation eq{context, from.velocity, dt, scratch};
   VAT_CHECK(forces.particle.size() == f.model.particle_count &&
             from.velocity.size() == at.velocity.size());
   scratch.matrix.collect(context, viscosity);
@@ -327,9 +328,7 @@ void solve_damping(const ForceModel& f, const Configuration& from, Configuration
   }
   if (f.model.has_friction) scratch.friction_torque.resize(f.model.particle_count);
   find_inertias(eq);
-  const int products = iterate(eq, start(eq, forces, [&](std::size_t i) {
-                                 return Vec3(from.velocity[i] - at.velocity[i]);
-                               }));
+  const int products = iterate(eq, start(eq, forces));
   if (f.report != nullptr) f.report->iterations.damping += static_cast<std::uint64_t>(products);
   for_damped_blocks(eq, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) forces.particle[i] += scratch.force.particle[i];

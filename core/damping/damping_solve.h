@@ -25,7 +25,7 @@ struct DampedBody {
 /// Sums over one block or over all blocks.
 struct DampingSums {
   Real error = 0;  ///< <r, M^-1 r> of the residual r
-  Real size = 0;   ///< <w, M w>
+  Real size = 0;   ///< <v - from, M (v - from)>
 
   DampingSums& operator+=(const DampingSums& other) {
     error += other.error;
@@ -83,8 +83,8 @@ bool must_solve_damping(const Oscillation& bound, Real dt);
 /// velocities before the forces act. `dt` is the duration of the action [s]: half a step for
 /// velocity Verlet, a whole step for symplectic Euler. The equation is linear in w = v - at, and is
 /// solved by conjugate gradients. The iterations end if the error of w, in the norm of M, is below
-/// 1 % of w, or below 3e-4 of the velocities relative to their mean. D w is a sum of equal and
-/// opposite forces, so that momentum is conserved after any number of iterations. Requires the
+/// 1 % of v - from, or below 3e-4 of the velocities relative to their mean. D w is a sum of equal
+/// and opposite forces, so that momentum is conserved after any number of iterations. Requires the
 /// dampers of an evaluation with Scratch::keep_dampers. Rigid bodies must have the same motion in
 /// `at` and `from`.
 void solve_damping(const ForceModel& force_model, const Configuration& from, Configuration& at,
