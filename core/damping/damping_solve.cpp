@@ -104,20 +104,21 @@ void apply_damping(const Equation& eq, Motion& w, Motion& force) {
   });
 }
 
-/// r = dt f + M (from - at), p = M^-1 r, w = 0, D w = 0; returns <r, M^-1 r>.
-Real start(const Equation& eq, const Forces& forces) {
+/// r = dt f + M (from - at), p = M^-1 r, w = 0, D w = 0.
+DampingSums start(const Equation& eq, const Forces& forces) {
   const Model& model = eq.model();
   const std::vector<DampedBody>& bodies = eq.scratch.bodies;
   Motion& w = eq.scratch.change;
   Motion& force = eq.scratch.force;
   Motion& r = eq.scratch.residual;
   Motion& p = eq.scratch.direction;
-  Real error = sum_over_particles(eq, eq.scratch.partial_sums, [&](std::size_t i, Real& sum) {
+  DampingSums total = sum_over_particles(eq, eq.scratch.sums, [&](std::size_t i, DampingSums& sum) {
     r.particle[i] = eq.dt * forces.particle[i] + model.mass[i] * eq.past_velocity(i);
     p.particle[i] = model.inverse_mass[i] * r.particle[i];
     w.particle[i].setZero();
     force.particle[i].setZero();
-    sum += r.particle[i].dot(p.particle[i]);
+    sum.error += r.particle[i].dot(p.particle[i]);
+    sum.size += model.mass[i] * eq.past_velocity(i).squaredNorm();
   });
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     r.linear[b] = eq.dt * forces.rigid_force[b];
@@ -127,9 +128,9 @@ Real start(const Equation& eq, const Forces& forces) {
     for (std::vector<Vec3>* zero : {&w.linear, &w.angular, &force.linear, &force.angular}) {
       (*zero)[b].setZero();
     }
-    error += r.linear[b].dot(p.linear[b]) + r.angular[b].dot(p.angular[b]);
+    total.error += r.linear[b].dot(p.linear[b]) + r.angular[b].dot(p.angular[b]);
   }
-  return error;
+  return total;
 }
 
 /// <p, (M - dt D) p> with q = D p.
@@ -223,18 +224,16 @@ Real permitted_error(const Equation& eq) {
 }
 
 /// Conjugate gradients from w = 0, preconditioned with M. Returns the number of products.
-int iterate(const Equation& eq, Real error) {
+int iterate(const Equation& eq, DampingSums sums) {
   const Real permitted = permitted_error(eq);
-  Real size = 0;
   for (int iteration = 0; iteration < kMaxDampingPasses; ++iteration) {
-    if (!(error > std::max(kTolerance * kTolerance * size, permitted))) return iteration;
+    if (!(sums.error > std::max(kTolerance * kTolerance * sums.size, permitted))) return iteration;
     apply_damping(eq, eq.scratch.direction, eq.scratch.product);
     const Real curvature = curvature_along(eq);
     if (!(curvature > 0)) return iteration + 1;  // too small for the precision of numbers
-    const DampingSums advance = advance_along(eq, error / curvature);
-    turn_direction(eq, advance.error / error);
-    error = advance.error;
-    size = advance.size;
+    const DampingSums advance = advance_along(eq, sums.error / curvature);
+    turn_direction(eq, advance.error / sums.error);
+    sums = advance;
   }
   return kMaxDampingPasses;
 }

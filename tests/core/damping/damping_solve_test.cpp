@@ -137,6 +137,19 @@ TEST(DampingSolve, TakesEnergyAndKeepsMomenta) {
   }
 }
 
+// The forces at the start of a step of free fall predict the velocities at its end.
+TEST(DampingSolve, StartsFromPredictedVelocities) {
+  Scene scene = make_viscous_drop();
+  std::get<ParticleShape>(scene.bodies[0].shape).velocities.clear();
+  scene.materials[0].liquid->stiffness = 0;  // no pressure, which accelerates the drop's surface
+  scene.gravity = Vec3(0, 0, -9.81);
+  Simulation simulation = make_simulation(scene);
+  simulation.advance(1);
+  for (int n = 0; n < 10; ++n) EXPECT_EQ(simulation.advance(1).iterations.damping, 0U) << n;
+  const BodyDiagnostics drop = simulation.diagnostics().bodies[0];
+  EXPECT_NEAR(drop.linear_momentum.z(), -9.81 * drop.mass * simulation.time(), 1e-9 * drop.mass);
+}
+
 TEST(DampingSolve, DoesNotMoveAHeldBody) {
   Scene scene = make_damped_contacts();
   scene.bodies[1].fixed = true;
