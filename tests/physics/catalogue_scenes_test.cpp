@@ -71,7 +71,7 @@ class CatalogueScene : public testing::TestWithParam<std::string> {};
 TEST_P(CatalogueScene, RunsWithoutTheGuardAndStaysInItsVat) {
   const Result<Scene> scene = read_scene_file(kFolder + GetParam() + ".json");
   ASSERT_TRUE(scene.ok()) << scene.errors()[0].message;
-  // Bodies of one row of particles roll, so a coarse scene can come to rest much later.
+  // A coarse scene can come to rest later: brick-wall moves for more than a minute.
   const bool sleeps = scene.value().sleeping.has_value();
   const int seconds = sleeps ? kSecondsToRest : kSeconds;
   const Result<Scene> coarse = at_level(scene.value(), Level::coarse);
