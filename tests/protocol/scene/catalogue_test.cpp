@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "core/validation/validate.h"
 #include "tests/protocol/scene/scene_json_cases.h"
 #include "tests/support/temporary_folder.h"
 
@@ -39,6 +40,16 @@ TEST(WriteScene, EveryCatalogueSceneIsReadBitByBit) {
     const Result<Scene> back = read_scene_text(write_scene(scene).dump(), no_meshes);
     ASSERT_EQ(lines(back), "") << entry.name;
     EXPECT_EQ(bits_of(back.value()), bits_of(scene)) << entry.name;
+  }
+}
+
+TEST(CatalogueScenes, HaveStableStepsAndNoUnusedSettings) {
+  const Result<Catalogue> catalogue = Catalogue::open(kScenesFolder);
+  ASSERT_EQ(lines(catalogue), "");
+  for (const CatalogueEntry& entry : catalogue.value().entries()) {
+    for (const Warning& warning : find_warnings(*catalogue.value().find(entry.name))) {
+      EXPECT_EQ(warning.code, "slow") << entry.name << ": " << warning.message;
+    }
   }
 }
 
