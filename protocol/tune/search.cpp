@@ -13,6 +13,10 @@ double total_seconds(const std::vector<Segment>& segments) {
                          [](double sum, const Segment& segment) { return sum + segment.seconds; });
 }
 
+double slowest_part(const Outcome& outcome) {
+  return std::ranges::max(outcome.segments, {}, &Segment::seconds).seconds;
+}
+
 double median_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::ranges::nth_element(values, middle);
@@ -83,13 +87,24 @@ class Search {
   }
 
   void drop_if_dominated(std::size_t c) {
-    if (settings_.exhaustive || !is_waiting(c)) return;
+    if (!is_waiting(c) || outcomes_[c].segments.empty()) return;
     for (std::size_t d = 0; d < outcomes_.size(); ++d) {
-      if (d == c || outcomes_[d].kind == OutcomeKind::failed) continue;
-      if (!is_better_so_far(d, c) && !is_better_at_end(d, c)) continue;
+      if (d == c || outcomes_[d].kind == OutcomeKind::failed || !dominates(d, c)) continue;
       outcomes_[c].dominated_by = d;
       return end(c, OutcomeKind::dropped);
     }
+  }
+
+  bool dominates(std::size_t d, std::size_t c) const {
+    switch (settings_.drops) {
+      case DropRule::expected:
+        return is_better_so_far(d, c) || is_better_at_end(d, c);
+      case DropRule::proven:
+        return is_proven_better(d, c);
+      case DropRule::never:
+        return false;
+    }
+    return false;
   }
 
   Real error_at(std::size_t c, std::size_t moment) const {
@@ -110,11 +125,21 @@ class Search {
   }
 
   bool is_better_at_end(std::size_t d, std::size_t c) const {
-    if (outcomes_[d].kind != OutcomeKind::completed || outcomes_[c].segments.empty()) return false;
-    const Real bound = error_at(c, outcomes_[c].segments.size());
-    if (error_at(d, settings_.moments) > bound) return false;
+    if (!has_smaller_error_at_end(d, c)) return false;
     const double seconds = outcomes_[d].seconds();
     return seconds <= outcomes_[c].seconds() || seconds * kTimeMargin <= expected_seconds(c);
+  }
+
+  bool is_proven_better(std::size_t d, std::size_t c) const {
+    return has_smaller_error_at_end(d, c) &&
+           outcomes_[d].seconds() * kTimeMargin <= outcomes_[c].seconds() &&
+           slowest_part(outcomes_[d]) * kTimeMargin <= slowest_part(outcomes_[c]);
+  }
+
+  /// Returns whether d is completed, with an error of at most the lower bound of that of c.
+  bool has_smaller_error_at_end(std::size_t d, std::size_t c) const {
+    return outcomes_[d].kind == OutcomeKind::completed &&
+           error_at(d, settings_.moments) <= error_at(c, outcomes_[c].segments.size());
   }
 
   /// Returns the time of a whole run, from the time so far.
@@ -227,9 +252,8 @@ std::vector<Point> points_of(const std::vector<Outcome>& outcomes, const SearchS
   for (std::size_t c = 0; c < outcomes.size(); ++c) {
     const Outcome& outcome = outcomes[c];
     if (outcome.kind != OutcomeKind::completed) continue;
-    const Segment& slowest = std::ranges::max(outcome.segments, {}, &Segment::seconds);
     points.push_back({c, outcome.seconds() / settings.duration,
-                      slowest.seconds * parts / settings.duration,
+                      slowest_part(outcome) * parts / settings.duration,
                       std::max(outcome.segments.back().bound, settings.floor)});
   }
   return points;

@@ -42,14 +42,21 @@ struct Progress {
   double remaining = 0;  ///< estimated computing time [s]
 };
 
+/// Condition for ending the run of a candidate early.
+enum class DropRule : std::uint8_t {
+  expected,  ///< the expected time and the error so far are worse than those of another candidate
+  proven,    ///< the time and the error so far exceed those of a completed run
+  never,
+};
+
 struct SearchSettings {
   std::size_t candidates = 0;
   std::size_t moments = 10;  ///< per run
   std::size_t probe = 3;     ///< number of moments that all candidates run before any is completed
   double duration = 1;       ///< of a run [s]
   int repetitions = 3;       ///< timed runs of the best candidates
-  bool exhaustive = false;   ///< completes every run
-  Real floor = 0;            ///< errors below it count as this value
+  DropRule drops = DropRule::expected;
+  Real floor = 0;                                     ///< errors below it count as this value
   std::function<bool()> stop = [] { return false; };  ///< true: ends the search
   std::function<void(const Progress&)> show = [](const Progress&) {};
 };
@@ -82,12 +89,16 @@ inline constexpr std::size_t kFirstComparison = 2;
 /// 3. The candidates on the front, and those whose time exceeds the front by at most kTimeMargin,
 ///    run again, alternately. Their times are medians.
 ///
-/// After each part of a run, a candidate c is dropped if another candidate d
+/// After each part of a run, the rule `expected` drops a candidate c if another candidate d
 ///
 /// - is better at the same moment: time(d) kTimeMargin <= time(c) and error(d) kErrorMargin <=
 ///   error(c). This moment is at least kFirstComparison; or
 /// - is completed, its error is at most the lower bound of the error of c, and its time is at most
 ///   the present time of c, or the expected time of c divided by kTimeMargin.
+///
+/// The rule `proven` drops c if d is completed, its error is at most the lower bound of the error
+/// of c, and its total time and the time of its slowest part, both multiplied by kTimeMargin, are
+/// at most those of c so far. Such a candidate cannot be chosen, unless times vary by kTimeMargin.
 ///
 /// All errors are at least the floor.
 std::vector<Outcome> search(const SearchSettings& settings, const StartTrial& start);

@@ -102,10 +102,12 @@ SearchSettings Tuning::search_settings() const {
   SearchSettings search;
   search.candidates = set_.candidates.size();
   search.moments = parts_.count;
-  search.probe = std::max(1u, parts_.count / kProbedShare);
+  // The parts of a probe do not prove that another candidate is better.
+  const bool is_proven = settings_.drops == DropRule::proven;
+  search.probe = is_proven ? 1u : std::max(1u, parts_.count / kProbedShare);
   search.duration = parts_.duration;
   search.repetitions = settings_.repetitions;
-  search.exhaustive = settings_.exhaustive;
+  search.drops = settings_.drops;
   search.floor = measure_.floor();
   search.stop = settings_.stop;
   search.show = [this](const Progress& progress) { settings_.show("candidates", progress); };

@@ -15,9 +15,9 @@
 namespace vat::tune {
 
 struct TuneSettings {
-  Real until = 1;                 ///< duration of the runs, rounded to whole ticks [s]
-  int repetitions = 3;            ///< timed runs of the best candidates
-  bool exhaustive = false;        ///< completes every candidate
+  Real until = 1;       ///< duration of the runs, rounded to whole ticks [s]
+  int repetitions = 3;  ///< timed runs of the best candidates
+  DropRule drops = DropRule::expected;
   TaskRunner* runner = nullptr;   ///< null: serial. Otherwise, it must outlive the tuning
   std::function<double()> clock;  ///< computing time since any start [s]
   std::function<bool()> stop = [] { return false; };
@@ -50,8 +50,8 @@ class Tuning {
   const CandidateSet& set() const { return set_; }
   const ErrorMeasure& measure() const { return measure_; }
   const Parts& parts() const { return parts_; }
-  /// Replaces TuneSettings::exhaustive.
-  void set_exhaustive(bool exhaustive) { settings_.exhaustive = exhaustive; }
+  /// Replaces TuneSettings::drops.
+  void set_drops(DropRule drops) { settings_.drops = drops; }
 
  private:
   Tuning(const Scene& scene, TuneSettings settings, CandidateSet set, ErrorMeasure measure,

@@ -180,7 +180,7 @@ int tune_scene(const TuneOptions& options) {
   tune::TuneSettings settings;
   settings.until = options.until;
   settings.repetitions = options.repetitions;
-  settings.exhaustive = options.exhaustive;
+  if (options.exhaustive) settings.drops = tune::DropRule::never;
   settings.runner = &runner;
   settings.clock = options.threads > 1 ? elapsed_seconds : thread_seconds;
   settings.stop = [&interrupt] { return interrupt.signal() != 0; };

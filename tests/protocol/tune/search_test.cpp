@@ -13,6 +13,7 @@ namespace {
 
 using testing::Each;
 using testing::ElementsAre;
+using testing::Pointwise;
 using tune::Outcome;
 using tune::OutcomeKind;
 using tune::Point;
@@ -76,6 +77,10 @@ class Machine {
   std::vector<std::size_t> order_;
   std::size_t advances_ = 0;
 };
+
+MATCHER(SameCandidate, "") {
+  return std::get<0>(arg).candidate == std::get<1>(arg).candidate;
+}
 
 SearchSettings once() {
   SearchSettings settings;
@@ -144,10 +149,30 @@ TEST(Search, FailedCandidatesDominateNothing) {
 
 TEST(Search, ExhaustiveSearchCompletesAll) {
   SearchSettings settings = once();
-  settings.exhaustive = true;
+  settings.drops = tune::DropRule::never;
   Machine machine({{1, 0.01}, {2, 0.1}, {4, 1}});
   EXPECT_THAT(kinds(machine.search(settings)), Each(OutcomeKind::completed));
   EXPECT_EQ(machine.advances(), 3 * kMoments);
+}
+
+TEST(Search, ProvenRuleDropsOnlyWorseRuns) {
+  SearchSettings settings = once();
+  settings.drops = tune::DropRule::proven;
+  // The time of the second candidate exceeds 1.25 s after 7 of 10 parts. The third one is too
+  // similar to the first one, and the fourth one is more accurate.
+  Machine machine({{1, 0.01}, {2, 0.1}, {1.2, 0.1}, {5, 0.001}});
+  const auto outcomes = machine.search(settings);
+  EXPECT_THAT(kinds(outcomes), ElementsAre(OutcomeKind::completed, OutcomeKind::dropped,
+                                           OutcomeKind::completed, OutcomeKind::completed));
+  EXPECT_EQ(outcomes[1].segments.size(), 7u);
+}
+
+TEST(Search, ProvenRuleKeepsRunsWhoseSlowestPartIsFaster) {
+  SearchSettings settings = once();
+  settings.drops = tune::DropRule::proven;
+  Machine machine({{.seconds = 1, .error = 0.01, .first = 5}, {4, 0.1}, {7, 0.1}});
+  EXPECT_THAT(kinds(machine.search(settings)),
+              ElementsAre(OutcomeKind::completed, OutcomeKind::completed, OutcomeKind::dropped));
 }
 
 TEST(Search, TimesAreMediansOfAlternateRuns) {
@@ -196,6 +221,22 @@ std::vector<Given> random_candidates(std::mt19937& random) {
   return given;
 }
 
+TEST(Search, ProvenRuleKeepsTheFrontInLessTime) {
+  std::mt19937 random(7);
+  for (int n = 0; n < 20; ++n) {
+    Machine all(random_candidates(random));
+    Machine some = all;
+    SearchSettings settings = once();
+    settings.moments = kMoments;
+    settings.drops = tune::DropRule::never;
+    const auto front = pareto_front(tune::points_of(all.search(settings), settings));
+    settings.drops = tune::DropRule::proven;
+    const auto kept = pareto_front(tune::points_of(some.search(settings), settings));
+    EXPECT_THAT(kept, Pointwise(SameCandidate(), front)) << n;
+    EXPECT_LT(some.advances(), all.advances());
+  }
+}
+
 TEST(Search, ChoicesAreThoseOfTheExhaustiveSearchInLessTime) {
   std::mt19937 random(7);
   std::size_t advances = 0;
@@ -205,7 +246,7 @@ TEST(Search, ChoicesAreThoseOfTheExhaustiveSearchInLessTime) {
     SearchSettings settings = once();
     const auto searched = machine.search(settings);
     advances += machine.advances();
-    settings.exhaustive = true;
+    settings.drops = tune::DropRule::never;
     const auto all = machine.search(settings);
     settings.moments = kMoments;
     for (const Real error : {0.3, 0.1, 0.03, 0.01, 0.003}) {
