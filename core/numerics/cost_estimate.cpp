@@ -4,19 +4,23 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace vat {
 namespace {
 
 /// Cost of a particle or a spring, with all data stored for it.
 struct UnitCost {
-  Real memory;   ///< [bytes]
-  Real seconds;  ///< for one force evaluation
+  Real memory;                 ///< [bytes]
+  Real seconds;                ///< for one force evaluation
+  Real neighbour_seconds = 0;  ///< the same, for each neighbour of a liquid particle
 };
 
-// Slopes between scenes of 1 000 and 64 000 particles.
-constexpr UnitCost kLiquid{570, 4.6e-7};         // with the neighbours within two spacings
-constexpr UnitCost kIncompressible{1200, 2e-6};  // with 10 to 20 iterations
+// Slopes between scenes of 1 000 and 64 000 particles. The times of liquids are from scenes of 4000
+// particles in two and three dimensions, with support radii of two and three spacings.
+constexpr UnitCost kGas{570, 2.5e-7, 1.2e-8};
+constexpr UnitCost kTait{570, 1e-7, 2.6e-9};
+constexpr UnitCost kIncompressible{1200, 6e-7, 4e-8};
 constexpr UnitCost kDeformable{400, 2e-8};
 constexpr UnitCost kSpring{300, 1.3e-8};
 constexpr UnitCost kRigid{360, 2e-8};
@@ -24,27 +28,43 @@ constexpr UnitCost kRigid{360, 2e-8};
 constexpr Real kCurvature = 2;   // four passes over the neighbours, compared with two
 constexpr Real kCohesion = 0.5;  // of the neighbours within twice the support radius
 
-// Relative to the number of neighbours within two spacings: the cost of a particle without
-// neighbours, and the finest lattice for which kernels are made.
-constexpr Real kMinShare = 0.1;
+// Support radius of the finest lattice for which kernels are made.
 constexpr Real kMaxSpacings = 8;
+
+const UnitCost& unit_cost(PressureSolver solver) {
+  switch (solver) {
+    case PressureSolver::gas:
+      return kGas;
+    case PressureSolver::tait:
+      return kTait;
+    case PressureSolver::incompressible:
+      break;
+  }
+  return kIncompressible;
+}
+
+/// Number of lattice points within `reach` spacings.
+Real lattice_neighbours(Real reach, int dimensions) {
+  constexpr Real kPi = std::numbers::pi_v<Real>;
+  return dimensions == 2 ? kPi * reach * reach : 4 * kPi / 3 * reach * reach * reach;
+}
 
 /// Cost of a liquid particle. The time depends on its neighbours.
 UnitCost liquid_cost(const Scene& scene, const BodyDescription& body, const SampledBody& sample) {
   const Material& material = material_of(scene, body);
   const LiquidConstants& liquid = *material.liquid;
-  const Real dimensions = scene.dimensions;
+  const int dimensions = scene.dimensions;
   const Real mass = std::ranges::min(sample.masses);
-  const Real spacing = std::pow(mass / material.density, 1 / dimensions);
+  const Real spacing = std::pow(mass / material.density, Real(1) / dimensions);
   const Real reach = std::min(liquid.support_radius / spacing, kMaxSpacings);
-  Real share = std::max(kMinShare, std::pow(reach / 2, dimensions));
+  Real neighbours = lattice_neighbours(reach, dimensions);
   if (liquid.surface_tension > 0) {
-    share *= scene.surface_model == SurfaceModel::cohesion ? 1 + kCohesion * std::pow(2, dimensions)
-                                                           : 1 + kCurvature;
+    neighbours *= scene.surface_model == SurfaceModel::cohesion
+                      ? 1 + kCohesion * std::pow(2, dimensions)
+                      : 1 + kCurvature;
   }
-  const bool is_incompressible = scene.pressure_solver == PressureSolver::incompressible;
-  UnitCost cost = is_incompressible ? kIncompressible : kLiquid;
-  cost.seconds *= share;
+  UnitCost cost = unit_cost(scene.pressure_solver);
+  cost.seconds += neighbours * cost.neighbour_seconds;
   return cost;
 }
 

@@ -78,14 +78,33 @@ TEST(CostEstimate, AddsTheCostsOfBodies) {
 
 TEST(CostEstimate, GoesByTheNeighboursOfALiquid) {
   Scene scene = sea(0.001);
-  const Real once = cost(scene).seconds;
   LiquidConstants& liquid = *scene.materials[0].liquid;
+  const Real support_radius = liquid.support_radius;
+  liquid.support_radius = 1e-6 * support_radius;
+  const Real alone = cost(scene).seconds;
+  const auto of_neighbours = [&] { return cost(scene).seconds - alone; };
+  liquid.support_radius = support_radius;
+  const Real once = of_neighbours();
+  ASSERT_GT(once, 0);
+  const Real tolerance = 1e-9 * (alone + once);
   liquid.support_radius *= 2;
-  EXPECT_NEAR(cost(scene).seconds, 8 * once, 1e-9 * once);
+  EXPECT_NEAR(of_neighbours(), 8 * once, tolerance);
   liquid.surface_tension = 0.1;
-  EXPECT_NEAR(cost(scene).seconds, 24 * once, 1e-9 * once);
+  EXPECT_NEAR(of_neighbours(), 24 * once, tolerance);
   scene.surface_model = SurfaceModel::cohesion;
-  EXPECT_NEAR(cost(scene).seconds, 40 * once, 1e-9 * once);
+  EXPECT_NEAR(of_neighbours(), 40 * once, tolerance);
+}
+
+TEST(CostEstimate, GoesByThePressureSolver) {
+  Scene scene = sea(0.001);
+  std::vector<Real> costs;
+  for (const auto solver :
+       {PressureSolver::tait, PressureSolver::gas, PressureSolver::incompressible}) {
+    scene.pressure_solver = solver;
+    costs.push_back(cost(scene).seconds);
+  }
+  EXPECT_LT(costs[0], costs[1]);
+  EXPECT_LT(costs[1], costs[2]);
 }
 
 TEST(Warnings, OfATolerance) {
