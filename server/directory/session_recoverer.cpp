@@ -42,24 +42,25 @@ void SessionRecoverer::start(const StoredSession& session) {
 
 void SessionRecoverer::post(StoredSession session) {
   VAT_CHECK(tables_.mutex.is_held());
-  tables_.sessions.add_absent(session.number, session.name);
-  boost::asio::post(*threads_, [this, session = std::move(session)] { recover(session); });
+  const std::uint64_t number = tables_.sessions.add_absent(session.number, session.name);
+  boost::asio::post(*threads_,
+                    [this, session = std::move(session), number] { recover(session, number); });
 }
 
 void SessionRecoverer::join() {
   if (threads_) threads_->join();
 }
 
-void SessionRecoverer::recover(const StoredSession& stored) {
+void SessionRecoverer::recover(const StoredSession& stored, std::uint64_t recovery) {
   const ThreadPoolRunner::HelperReservation reservation(resources_.runner);
   try {
-    finish(stored, make_session(stored));
+    finish(stored, recovery, make_session(stored));
   } catch (const Cancelled&) {
     log_info("session {}: recovery cancelled", to_id(stored.number));
   } catch (const std::exception& error) {
     log_error("session {} ({}) cannot be recovered, and stays in {} unchanged: {}",
               to_id(stored.number), stored.name, resources_.storage->folder(), error.what());
-    finish(stored, nullptr);
+    finish(stored, recovery, nullptr);
   }
 }
 
@@ -82,16 +83,17 @@ std::shared_ptr<Session> SessionRecoverer::make_session(const StoredSession& sto
   return session;
 }
 
-void SessionRecoverer::finish(const StoredSession& stored, std::shared_ptr<Session> session) {
+void SessionRecoverer::finish(const StoredSession& stored, std::uint64_t recovery,
+                              std::shared_ptr<Session> session) {
   std::vector<AbsentSession::Waiting> waiting;
   {
     const std::lock_guard lock(tables_.mutex);
     if (admission_.stopped()) return;
-    if (!tables_.sessions.absent().contains(stored.number)) return;  // another node took it
-    AbsentSession& absent = tables_.sessions.absent_at(stored.number);
-    waiting = std::move(absent.waiting);
+    AbsentSession* const absent = tables_.sessions.find_recovering(stored.number, recovery);
+    if (absent == nullptr) return;
+    waiting = std::move(absent->waiting);
     if (session == nullptr) {
-      absent.is_lost = true;
+      absent->is_lost = true;
     } else {
       tables_.sessions.remove_absent(stored.number);
       tables_.sessions.add(stored.number, session, nullptr);

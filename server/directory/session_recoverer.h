@@ -2,6 +2,7 @@
 
 #include <boost/asio/thread_pool.hpp>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -27,10 +28,12 @@ class SessionRecoverer {
   void join();
 
  private:
-  void recover(const StoredSession& stored);
+  /// `recovery` is the number of the recovery in the registry.
+  void recover(const StoredSession& stored, std::uint64_t recovery);
   std::shared_ptr<Session> make_session(const StoredSession& stored);
   /// Ends a recovery. `session` is null if the recovery has failed.
-  void finish(const StoredSession& stored, std::shared_ptr<Session> session);
+  void finish(const StoredSession& stored, std::uint64_t recovery,
+              std::shared_ptr<Session> session);
 
   ServerResources& resources_;
   DirectoryTables& tables_;

@@ -71,10 +71,19 @@ std::size_t SessionRegistry::replay_count() const {
       std::distance(running_.lower_bound(kFirstReplay), running_.end()));
 }
 
-void SessionRegistry::add_absent(SessionNumber number, const std::string& name) {
+std::uint64_t SessionRegistry::add_absent(SessionNumber number, const std::string& name) {
   VAT_CHECK(mutex_.is_held());
   VAT_CHECK(number < kFirstReplay && !running_.contains(number));
-  absent_[number].name = name;
+  AbsentSession& absent = absent_[number];
+  absent.name = name;
+  absent.recovery = ++last_recovery_;
+  return absent.recovery;
+}
+
+AbsentSession* SessionRegistry::find_recovering(SessionNumber number, std::uint64_t recovery) {
+  VAT_CHECK(mutex_.is_held());
+  const auto found = absent_.find(number);
+  return found == absent_.end() || found->second.recovery != recovery ? nullptr : &found->second;
 }
 
 void SessionRegistry::remove_absent(SessionNumber number) {

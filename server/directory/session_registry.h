@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
@@ -22,7 +23,8 @@ struct AbsentSession {
     JoinRequest request;
   };
   std::string name;
-  bool is_lost = false;  ///< the recovery has failed; the session remains in the storage
+  std::uint64_t recovery = 0;  ///< number of the recovery in progress
+  bool is_lost = false;        ///< the recovery has failed; the session remains in the storage
   std::vector<Waiting> waiting;
 };
 
@@ -54,11 +56,15 @@ class SessionRegistry {
   const Running& running() const;
   std::size_t replay_count() const;
 
-  void add_absent(SessionNumber number, const std::string& name);
+  /// Adds an absent session, or starts another recovery of it. Returns the number of the recovery.
+  std::uint64_t add_absent(SessionNumber number, const std::string& name);
   void remove_absent(SessionNumber number);
   /// Returns the absent session with this id, or null. Without an id, returns the first session if
   /// its recovery is in progress.
   Absent::value_type* find_absent(const std::optional<SessionId>& id);
+  /// Returns the absent session if its last recovery has this number, and otherwise null: another
+  /// node took the session during the recovery.
+  AbsentSession* find_recovering(SessionNumber number, std::uint64_t recovery);
   AbsentSession& absent_at(SessionNumber number);
   const Absent& absent() const;
   bool is_recovering() const;
@@ -73,6 +79,7 @@ class SessionRegistry {
   Absent absent_;
   SessionNumber last_number_ = 0;
   SessionNumber last_replay_ = kFirstReplay;
+  std::uint64_t last_recovery_ = 0;
 };
 
 }  // namespace vat
