@@ -38,10 +38,11 @@ bool SceneRun::take_tick(Segment& segment) {
   return !report.failed && report.undone_steps == 0;
 }
 
-std::optional<Segment> SceneRun::advance() {
+std::optional<Segment> SceneRun::advance(double most_seconds) {
   Segment segment;
   for (std::uint32_t tick = 0; tick < parts_.ticks; ++tick) {
     if (settings_.stop() || !take_tick(segment)) return {};
+    if (segment.seconds > most_seconds) return segment;
   }
   motion_.push_back(measure(simulation(), free_bodies_));
   // The solver of incompressible liquids reports its last step only.
@@ -52,8 +53,8 @@ std::optional<Segment> SceneRun::advance() {
   return segment;
 }
 
-std::optional<Segment> SceneTrial::advance() {
-  std::optional<Segment> segment = run_.advance();
+std::optional<Segment> SceneTrial::advance(double most_seconds) {
+  std::optional<Segment> segment = run_.advance(most_seconds);
   if (segment) segment->bound = measure_.bound(run_.motion());
   return segment;
 }

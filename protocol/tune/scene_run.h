@@ -12,9 +12,10 @@ class SceneRun {
   /// Creates the simulation of a valid scene. `settings` must outlive the run.
   SceneRun(const Scene& scene, const Parts& parts, const TuneSettings& settings);
 
-  /// Runs to the next moment and measures it. Returns nothing after a guard event, or if the run is
+  /// Runs to the next moment and measures it, or runs until the computing time of this part exceeds
+  /// `most_seconds`, without a measurement. Returns nothing after a guard event, or if the run is
   /// stopped. The segment has no bound.
-  std::optional<Segment> advance();
+  std::optional<Segment> advance(double most_seconds);
   /// Keeps only a snapshot until the next call of advance().
   void suspend();
 
@@ -43,7 +44,7 @@ class SceneTrial final : public Trial {
              const TuneSettings& settings)
       : measure_(measure), run_(scene, parts, settings) {}
 
-  std::optional<Segment> advance() override;
+  std::optional<Segment> advance(double most_seconds) override;
   void suspend() override { run_.suspend(); }
 
  private:

@@ -8,6 +8,8 @@
 namespace vat::tune {
 namespace {
 
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
 double total_seconds(const std::vector<Segment>& segments) {
   return std::accumulate(segments.begin(), segments.end(), 0.0,
                          [](double sum, const Segment& segment) { return sum + segment.seconds; });
@@ -61,6 +63,10 @@ class Search {
     }
   }
 
+  double most_seconds() const {
+    return settings_.drops == DropRule::never ? kNoLimit : settings_.most_seconds;
+  }
+
   bool is_waiting(std::size_t c) const {
     return outcomes_[c].kind == OutcomeKind::waiting && trials_[c] != nullptr;
   }
@@ -68,10 +74,15 @@ class Search {
   void advance_to(std::size_t c, std::size_t moment) {
     Outcome& outcome = outcomes_[c];
     while (is_waiting(c) && outcome.segments.size() < moment && !settings_.stop()) {
-      const std::optional<Segment> segment = trials_[c]->advance();
+      const std::optional<Segment> segment =
+          trials_[c]->advance(most_seconds() - outcome.seconds());
       if (settings_.stop()) return;
       if (segment) {
         outcome.segments.push_back(*segment);
+        if (outcome.seconds() > most_seconds()) {
+          end(c, OutcomeKind::dropped);
+          return show();
+        }
         if (outcome.segments.size() == settings_.moments) outcome.kind = OutcomeKind::completed;
         drop_if_dominated(c);
       } else {
@@ -187,7 +198,7 @@ class Search {
   void time_again(std::size_t c, std::vector<std::vector<double>>& times) {
     const std::unique_ptr<Trial> trial = settings_.stop() ? nullptr : start_(c);
     for (std::size_t k = 0; k < settings_.moments && !settings_.stop(); ++k) {
-      const std::optional<Segment> segment = trial->advance();
+      const std::optional<Segment> segment = trial->advance(kNoLimit);
       if (settings_.stop() || !segment) return;
       times[k].push_back(segment->seconds);
     }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -26,8 +27,9 @@ struct Segment {
 class Trial {
  public:
   virtual ~Trial() = default;
-  /// Runs to the next moment. Returns nothing if the run failed.
-  virtual std::optional<Segment> advance() = 0;
+  /// Runs to the next moment, or until the computing time of this part exceeds `most_seconds`.
+  /// Returns nothing if the run failed.
+  virtual std::optional<Segment> advance(double most_seconds) = 0;
   /// Reduces memory until the next call of advance().
   virtual void suspend() {}
 };
@@ -56,6 +58,7 @@ struct SearchSettings {
   double duration = 1;       ///< of a run [s]
   int repetitions = 3;       ///< timed runs of the best candidates
   DropRule drops = DropRule::expected;
+  double most_seconds = std::numeric_limits<double>::infinity();  ///< of a run; see search()
   Real floor = 0;                                     ///< errors below it count as this value
   std::function<bool()> stop = [] { return false; };  ///< true: ends the search
   std::function<void(const Progress&)> show = [](const Progress&) {};
@@ -68,7 +71,7 @@ struct Outcome {
   OutcomeKind kind = OutcomeKind::waiting;
   /// Medians over the runs of this candidate, by part. All parts if the run is complete.
   std::vector<Segment> segments;
-  std::optional<std::size_t> dominated_by{};  ///< reason for `dropped`
+  std::optional<std::size_t> dominated_by{};  ///< reason for `dropped`; none: it is too slow
 
   double seconds() const;  ///< total computing time
 };
@@ -99,6 +102,8 @@ inline constexpr std::size_t kFirstComparison = 2;
 /// The rule `proven` drops c if d is completed, its error is at most the lower bound of the error
 /// of c, and its total time and the time of its slowest part, both multiplied by kTimeMargin, are
 /// at most those of c so far. Such a candidate cannot be chosen, unless times vary by kTimeMargin.
+///
+/// Both rules also drop a candidate whose time exceeds `most_seconds`.
 ///
 /// All errors are at least the floor.
 std::vector<Outcome> search(const SearchSettings& settings, const StartTrial& start);

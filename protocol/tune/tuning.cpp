@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/validation/validate.h"
 #include "protocol/tune/scene_run.h"
@@ -9,6 +10,7 @@
 namespace vat::tune {
 namespace {
 
+constexpr double kMostTime = 2;            // of a candidate, relative to the finer reference
 constexpr std::uint32_t kProbedShare = 3;  // 1 / share of the candidates that no part decides
 
 /// Progress of the two reference runs.
@@ -44,6 +46,7 @@ class ReferenceProgress {
 struct ReferenceRun {
   Motion motion;
   LeastMotion least;
+  double seconds = 0;
 };
 
 Result<ReferenceRun> follow(const Scene& scene, const Candidate& reference, const Parts& parts,
@@ -51,8 +54,9 @@ Result<ReferenceRun> follow(const Scene& scene, const Candidate& reference, cons
   const Scene tight = with_candidate(scene, reference);
   if (Errors errors = find_errors(tight); !errors.empty()) return errors;
   SceneRun run(tight, parts, settings);
+  double seconds = 0;
   for (std::uint32_t part = 0; part < parts.count; ++part) {
-    const std::optional<Segment> segment = run.advance();
+    const std::optional<Segment> segment = run.advance(std::numeric_limits<double>::infinity());
     if (settings.stop()) {
       return Error{"interrupted", "", "interrupted before the reference runs were complete"};
     }
@@ -61,8 +65,9 @@ Result<ReferenceRun> follow(const Scene& scene, const Candidate& reference, cons
                    "the reference run failed (" + describe(reference, true) + ")"};
     }
     progress.add(reference, segment->seconds);
+    seconds += segment->seconds;
   }
-  return ReferenceRun{run.motion(), run.least()};
+  return ReferenceRun{run.motion(), run.least(), seconds};
 }
 
 }  // namespace
@@ -87,16 +92,18 @@ Result<Tuning> Tuning::create(const Scene& scene, const TuneSettings& settings) 
   const Result<ReferenceRun> coarse = follow(scene, set.coarse, parts, settings, progress);
   if (!coarse) return coarse.errors();
   ErrorMeasure measure(fine.value().motion, coarse.value().motion, fine.value().least);
-  return Tuning(scene, settings, std::move(set), std::move(measure), parts);
+  return Tuning(scene, settings, std::move(set), std::move(measure), parts,
+                kMostTime * fine.value().seconds);
 }
 
 Tuning::Tuning(const Scene& scene, TuneSettings settings, CandidateSet set, ErrorMeasure measure,
-               Parts parts)
+               Parts parts, double most_seconds)
     : scene_(scene),
       settings_(std::move(settings)),
       set_(std::move(set)),
       measure_(std::move(measure)),
-      parts_(parts) {}
+      parts_(parts),
+      most_seconds_(most_seconds) {}
 
 SearchSettings Tuning::search_settings() const {
   SearchSettings search;
@@ -108,6 +115,7 @@ SearchSettings Tuning::search_settings() const {
   search.duration = parts_.duration;
   search.repetitions = settings_.repetitions;
   search.drops = settings_.drops;
+  search.most_seconds = most_seconds_;
   search.floor = measure_.floor();
   search.stop = settings_.stop;
   search.show = [this](const Progress& progress) { settings_.show("candidates", progress); };

@@ -55,7 +55,7 @@ class Tuning {
 
  private:
   Tuning(const Scene& scene, TuneSettings settings, CandidateSet set, ErrorMeasure measure,
-         Parts parts);
+         Parts parts, double most_seconds);
   SearchSettings search_settings() const;
 
   Scene scene_;
@@ -63,6 +63,7 @@ class Tuning {
   CandidateSet set_;
   ErrorMeasure measure_;
   Parts parts_;
+  double most_seconds_;  ///< of a run of a candidate
 };
 
 }  // namespace vat::tune

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <random>
+#include <tuple>
 
 #include "protocol/tune/search.h"
 
@@ -50,12 +51,14 @@ class Machine {
    public:
     GivenTrial(const Given& given, double factor, std::size_t& advances)
         : given_(given), factor_(factor), advances_(advances) {}
-    std::optional<Segment> advance() override {
+    std::optional<Segment> advance(double most_seconds) override {
       ++advances_;
       if (++moment_ == given_.fails_at) return {};
       const Real share = static_cast<Real>(moment_) / kMoments;
       const double factor = moment_ == 1 ? factor_ * given_.first : factor_;
-      return Segment{factor * given_.seconds / kMoments, given_.error * share * share, 1, 2};
+      const double seconds = factor * given_.seconds / kMoments;
+      // A run that is stopped exceeds the limit by a little.
+      return Segment{std::min(seconds, 1.001 * most_seconds), given_.error * share * share, 1, 2};
     }
 
    private:
@@ -165,6 +168,22 @@ TEST(Search, ProvenRuleDropsOnlyWorseRuns) {
   EXPECT_THAT(kinds(outcomes), ElementsAre(OutcomeKind::completed, OutcomeKind::dropped,
                                            OutcomeKind::completed, OutcomeKind::completed));
   EXPECT_EQ(outcomes[1].segments.size(), 7u);
+}
+
+TEST(Search, SlowRunsEndEarly) {
+  for (const auto& [rule, kind, seconds] :
+       {std::tuple{tune::DropRule::expected, OutcomeKind::dropped, 3.0},
+        {tune::DropRule::proven, OutcomeKind::dropped, 3.0},
+        {tune::DropRule::never, OutcomeKind::completed, 200.0}}) {
+    SearchSettings settings = once();
+    settings.drops = rule;
+    settings.most_seconds = 3;
+    Machine machine({{1, 0.01}, {200, 0.001}, {2.9, 0.005}});
+    const auto outcomes = machine.search(settings);
+    EXPECT_THAT(kinds(outcomes), ElementsAre(OutcomeKind::completed, kind, OutcomeKind::completed));
+    EXPECT_NEAR(outcomes[1].seconds(), seconds, 0.01);
+    EXPECT_EQ(outcomes[1].dominated_by, std::nullopt);
+  }
 }
 
 TEST(Search, ProvenRuleKeepsRunsWhoseSlowestPartIsFaster) {
