@@ -4,7 +4,7 @@ import { describe, expect, it } from 'vitest';
 import type { SceneShape } from '../../../web/client/index';
 import { BoundSurface, writeNormals } from '../../../web/viewer/view/solids/bound_surface';
 import { Lattice } from '../../../web/viewer/view/solids/lattice';
-import { geometryOf } from '../../../web/viewer/view/solids/shape_geometry';
+import { geometryOf, segmentsOf } from '../../../web/viewer/view/solids/shape_geometry';
 import { subdivide } from '../../../web/viewer/view/solids/subdivision';
 import { hullOf } from '../../../web/viewer/view/solids/cell_hull';
 import { openEdges, volumeOf } from '../mesh';
@@ -12,6 +12,7 @@ import type { Mesh } from '../mesh';
 
 const kBox: SceneShape = { type: 'box', size: [0.4, 0.2, 0.3], center: [1, 2, 3] };
 const kBall: SceneShape = { type: 'sphere', radius: 0.2, center: [0.1, 0, 0] };
+const kCylinder: SceneShape = { type: 'cylinder', radius: 0.1, height: 0.5, axis: [2, 0, 0] };
 const kTetrahedron: SceneShape = {
   type: 'mesh',
   vertices: [
@@ -72,12 +73,7 @@ describe('The surface of a rigid body', () => {
   it.each([
     ['box', kBox, 0.024, [0.4, 0.2, 0.3]],
     ['sphere', kBall, (4 / 3) * Math.PI * 0.008, [0.4, 0.4, 0.4]],
-    [
-      'cylinder',
-      { type: 'cylinder', radius: 0.1, height: 0.5, axis: [2, 0, 0] } as SceneShape,
-      Math.PI * 0.005,
-      [0.5, 0.2, 0.2],
-    ],
+    ['cylinder', kCylinder, Math.PI * 0.005, [0.5, 0.2, 0.2]],
     ['mesh', kTetrahedron, 1 / 6, [1, 1, 1]],
   ] as const)('has the size and the volume of its %s', (_, shape, volume, size) => {
     const geometry = geometryOf(shape)!;
@@ -99,6 +95,30 @@ describe('The surface of a rigid body', () => {
       expect(normal.length()).toBeCloseTo(1, 5);
       expect(normal.dot(face.normalize())).toBeGreaterThan(0.8);
     }
+  });
+
+  it.each([
+    ['box', kBox],
+    ['sphere', kBall],
+    ['cylinder', kCylinder],
+  ] as const)('has fewer triangles for a %s whose details are not visible', (_, shape) => {
+    const counts = [0, 1e-3, 1e-2].map((error) => {
+      const geometry = geometryOf(shape, error)!;
+      return (geometry.getIndex() ?? geometry.getAttribute('position')).count / 3;
+    });
+    expect(counts).toEqual([...counts].sort((a, b) => b - a));
+    expect(counts[2]).toBeLessThan(0.3 * counts[0]!);
+  });
+
+  it.each([
+    [0.2, 0.001],
+    [0.2, 0.003],
+    [0.02, 0.0005],
+  ])('has segments of a circle of %d m that are within %d m of it', (radius, error) => {
+    const sagitta = (segments: number): number => radius * (1 - Math.cos(Math.PI / segments));
+    const segments = segmentsOf(radius, error);
+    expect(sagitta(segments)).toBeLessThanOrEqual(error);
+    expect(sagitta(segments - 4)).toBeGreaterThan(error);
   });
 
   it('has sharp edges between inclined faces of a mesh', () => {

@@ -24,7 +24,7 @@ export class VatView {
     const box = new BoxGeometry(size.x, size.y, size.z);
     this.edges = new LineSegments2(
       new LineSegmentsGeometry().fromEdgesGeometry(new EdgesGeometry(box)),
-      new LineMaterial({ linewidth: 2 }),
+      new LineMaterial({ linewidth: 1.5 }),
     );
     this.edges.position.copy(middle);
     this.edges.renderOrder = 2;
@@ -74,4 +74,9 @@ export class VatView {
     this.floor.geometry.dispose();
     this.floor.material.dispose();
   }
+}
+
+/** Returns the lengths of the sides [m]. */
+export function sizeOf({ min, max }: VatDescription): number[] {
+  return max.map((most, q) => most - min[q]!);
 }

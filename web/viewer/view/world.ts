@@ -33,7 +33,7 @@ import { JoinedParticles } from './particles/joined_particles';
 import type { JoinedSolids } from './solids/joined_solids';
 import type { SolidMaker } from './solids/solid_of';
 import { Workshop } from './surface/workshop';
-import { VatView } from './vat_view';
+import { sizeOf, VatView } from './vat_view';
 
 /** A particle under the pointer. */
 export interface Picked {
@@ -48,6 +48,9 @@ export interface Shown {
   radius: number;
   particles: number;
 }
+
+/** Size of details of bodies that are not visible, relative to the longest side of the vat. */
+const kDetail = 2.5e-4;
 
 /** The contents of a session: bodies, vat and ground. */
 export class World {
@@ -143,6 +146,7 @@ export class World {
     this.looks = new Map(
       description.materials.map(({ name, appearance }) => [name, lookOf(appearance)]),
     );
+    this.shared.detail.value = vat ? kDetail * Math.max(...sizeOf(vat)) : 0;
     this.time = undefined;
     const old = this.bodies;
     this.bodies = new Map();
@@ -341,7 +345,7 @@ export class World {
   /** Sets the reference of absorption, the length of the darkest liquid, and relative values. */
   private measureClarity(): void {
     const { vat } = this.description!;
-    const widths = vat?.max.map((most, q) => most - vat.min[q]!);
+    const widths = vat ? sizeOf(vat) : undefined;
     const lengths = this.liquids.map(({ description }) => {
       const width = widths ? Math.min(...widths) : 20 * description.radius;
       return absorptionLengthOf(this.lookOf(description), width);

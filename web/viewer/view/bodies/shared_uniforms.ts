@@ -16,6 +16,8 @@ export interface SharedUniforms {
   look: LookUniforms;
   sun: SunUniforms;
   walls: WallUniforms;
+  /** The size of details of rigid bodies that are not visible [m]. */
+  detail: { value: number };
 }
 
 export function sharedUniforms(): SharedUniforms {
@@ -26,5 +28,6 @@ export function sharedUniforms(): SharedUniforms {
     look: lookUniforms(),
     sun: sunUniforms(floor.floor_z),
     walls: wallUniforms(),
+    detail: { value: 0 },
   };
 }

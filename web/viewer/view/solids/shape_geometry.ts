@@ -6,25 +6,30 @@ import type { SceneShape } from '../../../client/index';
 
 /** Radius of bevels / smallest size of the shape. */
 const kBevel = 0.05;
-const kBevelSegments = 3;
+/** The maximum number of segments of a bevel, a quarter of a circle. */
+const kMostBevel = 3;
 
-/** Segments of spheres and cylinders around their axes. */
-const kAround = 64;
+/** Limits of the number of segments of spheres and cylinders around their axes. */
+const kLeastAround = 12;
+const kMostAround = 64;
 
 /** Edges of meshes with a larger angle between their faces are sharp [rad]. */
 const kCrease = 0.6;
 
 type Of<T extends SceneShape['type']> = Extract<SceneShape, { type: T }>;
 
-/** Returns the surface of a shape; undefined for particles, which have no surface. */
-export function geometryOf(shape: SceneShape): BufferGeometry | undefined {
+/**
+ * Returns the surface of a shape; undefined for particles, which have no surface. `error` is the
+ * distance between curved surfaces and their triangles that is not visible [m]; 0: the finest.
+ */
+export function geometryOf(shape: SceneShape, error = 0): BufferGeometry | undefined {
   switch (shape.type) {
     case 'box':
-      return boxGeometry(shape);
+      return boxGeometry(shape, error);
     case 'sphere':
-      return sphereGeometry(shape);
+      return sphereGeometry(shape, error);
     case 'cylinder':
-      return cylinderGeometry(shape);
+      return cylinderGeometry(shape, error);
     case 'mesh':
       return meshGeometry(shape);
     default:
@@ -32,24 +37,42 @@ export function geometryOf(shape: SceneShape): BufferGeometry | undefined {
   }
 }
 
-function boxGeometry({ size, center = [0, 0, 0] }: Of<'box'>): BufferGeometry {
+/** Returns the number of segments of a circle, a multiple of 4, that are within `error` of it. */
+export function segmentsOf(radius: number, error: number): number {
+  const angle = Math.acos(1 - Math.min(error / radius, 1)); // half of a segment's
+  const quarter = angle > 0 ? Math.ceil(Math.PI / angle / 4) : Infinity;
+  return Math.min(Math.max(4 * quarter, kLeastAround), kMostAround);
+}
+
+function bevelSegmentsOf(bevel: number, error: number): number {
+  const angle = Math.acos(1 - Math.min(error / bevel, 1));
+  return Math.min(angle > 0 ? Math.max(Math.ceil(Math.PI / 4 / angle), 1) : Infinity, kMostBevel);
+}
+
+function boxGeometry({ size, center = [0, 0, 0] }: Of<'box'>, error: number): BufferGeometry {
   const bevel = kBevel * Math.min(...size);
-  return new RoundedBoxGeometry(...size, kBevelSegments, bevel).translate(...center);
+  const segments = bevelSegmentsOf(bevel, error);
+  return new RoundedBoxGeometry(...size, segments, bevel).translate(...center);
 }
 
-function sphereGeometry({ radius, center = [0, 0, 0] }: Of<'sphere'>): BufferGeometry {
-  return new SphereGeometry(radius, kAround, kAround / 2).translate(...center);
+function sphereGeometry(
+  { radius, center = [0, 0, 0] }: Of<'sphere'>,
+  error: number,
+): BufferGeometry {
+  const around = segmentsOf(radius, error);
+  return new SphereGeometry(radius, around, around / 2).translate(...center);
 }
 
-function cylinderGeometry(shape: Of<'cylinder'>): BufferGeometry {
+function cylinderGeometry(shape: Of<'cylinder'>, error: number): BufferGeometry {
   const { radius, height, axis = [0, 0, 1], center = [0, 0, 0] } = shape;
   const bevel = kBevel * Math.min(2 * radius, height);
+  const segments = bevelSegmentsOf(bevel, error);
   const outline = [new Vector2(0, -height / 2)];
   // The profile of the lower and the upper bevel. Double points at their ends keep the caps flat.
   for (const side of [-1, 1]) {
-    for (let i = 0; i <= kBevelSegments; ++i) {
-      const step = side < 0 ? i : kBevelSegments - i;
-      const angle = (Math.PI / 2) * (step / kBevelSegments);
+    for (let i = 0; i <= segments; ++i) {
+      const step = side < 0 ? i : segments - i;
+      const angle = (Math.PI / 2) * (step / segments);
       const x = radius - bevel + bevel * Math.sin(angle);
       outline.push(new Vector2(x, side * (height / 2 - bevel + bevel * Math.cos(angle))));
     }
@@ -59,7 +82,7 @@ function cylinderGeometry(shape: Of<'cylinder'>): BufferGeometry {
     new Vector3(0, 1, 0),
     new Vector3(...axis).normalize(),
   );
-  return toCreasedNormals(new LatheGeometry(outline, kAround), kCrease)
+  return toCreasedNormals(new LatheGeometry(outline, segmentsOf(radius, error)), kCrease)
     .applyQuaternion(turn)
     .translate(...center);
 }

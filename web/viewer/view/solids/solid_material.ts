@@ -83,9 +83,10 @@ const kFragmentShader = /* glsl */ `
   }
 `;
 
-/** The uniforms of the surroundings. */
+/** The uniforms of the surroundings, and the size of details that are not visible [m]. */
 export interface Surroundings {
   sun: SunUniforms;
+  detail: { value: number };
 }
 
 /** Returns the rotation and scale from rest coordinates to the grain: the longest axis first. */

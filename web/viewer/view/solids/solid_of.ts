@@ -19,7 +19,7 @@ export function solidOf(
     if (!places?.length || !spacing) return undefined;
     return new BoundSolid({ shape, spacing, places }, uniforms, surroundings);
   }
-  const geometry = geometryOf(shape);
+  const geometry = geometryOf(shape, surroundings.detail.value);
   if (!geometry) return undefined;
   geometry.computeBoundingBox();
   const box = geometry.boundingBox!;
