@@ -3,7 +3,7 @@ import { BodyKind } from '../../web/client/index';
 import type { BodyDescription, Frame, SessionDescription } from '../../web/client/index';
 import type { Theme } from '../../web/viewer/view/base/theme';
 
-const kNames = ['stage', 'floor', 'shadow', 'grid', 'edge', 'wall', 'mark'];
+const kNames = ['ground', 'sky', 'stage', 'floor', 'shadow', 'grid', 'edge', 'wall', 'mark'];
 export const kTheme = Object.fromEntries(
   kNames.map((name) => [name, new Color()]),
 ) as unknown as Theme;

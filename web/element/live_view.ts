@@ -136,7 +136,8 @@ export class LiveView {
   private show(frame: Frame): boolean {
     if (!this.view.show(frame)) return false;
     this.say(undefined);
-    this.view.stage.follow(this.view.world.framed);
+    const { stage, world } = this.view;
+    stage.follow(world.framed, world.bounds);
     if (this.pose) this.view.stage.pose = this.pose;
     this.pose = undefined;
     this.canvas.dataset.tick = String(frame.header.tick);

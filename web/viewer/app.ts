@@ -363,7 +363,7 @@ export class App {
     const { header } = frame;
     this.connection.showFrame(header);
     this.whole.showFrame(header);
-    this.stage.follow(this.world.framed);
+    this.stage.follow(this.world.framed, this.world.bounds);
     this.links.follow();
     if (this.linkedPose) this.stage.pose = this.linkedPose;
     this.linkedPose = undefined;

@@ -1,6 +1,6 @@
 import { Box3, PerspectiveCamera, Vector3 } from 'three';
 import { describe, expect, it } from 'vitest';
-import { framedBox, Framing } from '../../../web/viewer/view/base/framed';
+import { BodiesBox, framedBox, Framing } from '../../../web/viewer/view/base/framed';
 import { fitBox, nearestEye } from '../../../web/viewer/view/base/fit';
 import type { Seen } from '../../../web/viewer/view/base/fit';
 import { directionOf, firstDirection } from '../../../web/viewer/view/base/presets';
@@ -101,6 +101,54 @@ describe('framedBox', () => {
       ...expected.min,
       ...expected.max,
     ]);
+  });
+});
+
+describe('BodiesBox', () => {
+  const vat = new Box3(new Vector3(-5, -5, 0), new Vector3(5, 5, 10));
+  const low = new Box3(new Vector3(-2, -2, 0), new Vector3(2, 2, 1));
+  const high = new Box3(new Vector3(-1, -2, 4), new Vector3(4, 2, 9));
+
+  it('contains the bodies at once, with space beside them and the floor below', () => {
+    const room = new BodiesBox();
+    for (const bodies of [low, high]) {
+      room.follow(vat, bodies, 0.02);
+      expect(room.box.containsBox(bodies)).toBe(true);
+      expect(vat.containsBox(room.box)).toBe(true);
+      expect(room.box.min.z).toBe(0);
+      expect(room.box.max.x).toBeGreaterThan(bodies.max.x);
+    }
+  });
+
+  it('shrinks to bodies that come together, in simulated time', () => {
+    const room = new BodiesBox();
+    room.follow(vat, high, 0);
+    const first = room.box.max.z;
+    room.follow(vat, low, 0);
+    expect(room.box.max.z).toBe(first);
+    const heights = [0.1, 0.1, 10].map((seconds) => {
+      room.follow(vat, low, seconds);
+      return room.box.max.z;
+    });
+    expect(heights).toEqual([...heights].sort((a, b) => b - a));
+    expect(heights[0]).toBeLessThan(first);
+    expect(heights[1]).toBeGreaterThan(5);
+    expect(heights[2]).toBeCloseTo(1 + 0.08 * 10, 3);
+  });
+
+  it('is at least a quarter as wide as the vat', () => {
+    const room = new BodiesBox();
+    room.follow(vat, new Box3(new Vector3(), new Vector3(0.1, 0.1, 0.1)), 0);
+    const { x, y } = room.box.getSize(new Vector3());
+    expect(x).toBeCloseTo(2.5, 12);
+    expect(y).toBeCloseTo(2.5, 12);
+  });
+
+  it('starts anew when time goes back', () => {
+    const room = new BodiesBox();
+    room.follow(vat, high, 0);
+    room.follow(vat, low, -1);
+    expect(room.box.max.z).toBeCloseTo(1.8, 12);
   });
 });
 

@@ -40,3 +40,35 @@ it('frames rigid bodies at their poses in the first frame', () => {
   world.show({ header, blocks: [{ kind: BodyKind.rigid, body: 1, ...pose }] } as unknown as Frame);
   expect(world.framed.max.z).toBeCloseTo(0.6 + 0.1 + 0.08); // the top of the ball, and some space
 });
+
+/** A world with one body of a particle at this position, in a vat of 1 m. */
+function worldWith(kind: 'rigid' | 'liquid', radius: number): World {
+  const world = new World(kTheme, sharedUniforms());
+  const local = kind === 'rigid' ? { local_positions: [0, 0, 0] } : {};
+  const body = { body: 1, name: 'body', kind, material: 'wood', particles: 1, radius, ...local };
+  world.describe(described({}, { bodies: [body] }));
+  return world;
+}
+
+it('frames the space around rigid bodies, and follows them', () => {
+  const world = worldWith('rigid', 0.1);
+  const show = (x: number, time: number): void => {
+    const { header } = frameOf(1, {});
+    const pose = { position: [x, 0.5, 0.1], orientation: [1, 0, 0, 0] };
+    const block = { kind: BodyKind.rigid, body: 1, ...pose };
+    world.show({ header: { ...header, time }, blocks: [block] } as unknown as Frame);
+  };
+  show(0.2, 0);
+  expect(world.framed.max.x).toBeLessThan(0.5);
+  show(0.8, 0.1);
+  expect(world.framed.max.x).toBeGreaterThan(0.9);
+  expect(world.framed.min.x).toBeLessThan(0.2); // it shrinks slowly
+  show(0.8, 20);
+  expect(world.framed.min.x).toBeGreaterThan(0.5);
+});
+
+it('frames the whole vat if a liquid covers the floor', () => {
+  const world = worldWith('liquid', 0.1);
+  world.show(frameOf(1, { 1: 2 }));
+  expect([world.framed.min.x, world.framed.max.x]).toEqual([0, 1]);
+});

@@ -74,7 +74,7 @@ export class CameraControl {
     const { stage, world } = this.view;
     this.follow(undefined);
     stage.reframe();
-    stage.follow(world.framed);
+    stage.follow(world.framed, world.bounds);
   }
 
   private follow(body: number | undefined): void {

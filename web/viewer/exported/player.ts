@@ -98,7 +98,8 @@ class Player {
 
   private show(frame: Frame): boolean {
     if (!this.view.show(frame)) return false;
-    this.view.stage.follow(this.view.world.framed);
+    const { stage, world } = this.view;
+    stage.follow(world.framed, world.bounds);
     this.bar.showTick(frame.header.tick);
     this.canvas.dataset.tick = String(frame.header.tick);
     return true;

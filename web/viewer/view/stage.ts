@@ -60,8 +60,9 @@ export class Stage {
   private firstMargin = kFirstMargin;
   /** The box in the initial view. */
   private readonly framing = new Framing();
-  /** The box of the scene. */
+  /** The box in view, and that of the scene. */
   private readonly bounds = new Box3();
+  private readonly whole = new Box3();
 
   /** `beforeDraw` is called once per animation frame. */
   constructor(
@@ -88,6 +89,7 @@ export class Stage {
       this.framing.end();
       this.onMoved();
     });
+    canvas.addEventListener('pointerdown', () => this.framing.end()); // it would move held bodies
     new ResizeObserver(() => this.resize()).observe(canvas.parentElement ?? canvas);
     this.renderer.setAnimationLoop(() => this.draw());
   }
@@ -158,9 +160,10 @@ export class Stage {
     this.framing.begin();
   }
 
-  /** Keeps the whole box in view until the camera is moved. */
-  follow(box: Box3): void {
+  /** Keeps this box of a scene in view until the camera is moved. */
+  follow(box: Box3, scene: Box3): void {
     this.bounds.copy(box);
+    this.whole.copy(scene);
     if (this.framing.follow(box)) this.showFramed();
   }
 
@@ -212,7 +215,7 @@ export class Stage {
   private showFramed(): void {
     const { box } = this.framing;
     if (!box) return;
-    const from = firstDirection(box);
+    const from = firstDirection(this.whole);
     const { target, distance } = fitBox(box, from, this.camera, this.firstMargin);
     this.camera.position.copy(target).addScaledVector(from, distance);
     this.camera.near = distance / 100;

@@ -19,10 +19,10 @@ import { LiquidDrawing } from './fluid/liquid_drawing';
 import type { Footprint } from './base/footprint';
 import { absorptionLengthOf, lookOf } from './base/appearance';
 import type { Look } from './base/appearance';
-import { framedBox } from './base/framed';
 import { Ground, roundLength } from './base/ground';
 import type { Theme } from './base/theme';
 import { removeWalls, setWalls } from './fluid/wall_uniforms';
+import { Contents } from './contents';
 import { Marks } from './marks/marks';
 import type { LiquidStyle } from './base/liquid_style';
 import type { Choice } from './base/settings';
@@ -63,8 +63,7 @@ export class World {
   private looks: ReadonlyMap<string, Look> = new Map();
   /** The union of the vat's positions or, without a vat, the initial extent of the bodies. */
   private seen = new Box3();
-  /** The extent of the bodies in the first frame. */
-  private readonly contents = new Box3();
+  private readonly contents = new Contents();
   private style: LiquidStyle = 'splats';
   private solids: Choice<'solids'> = 'shape';
   private colouring: Choice<'colour'> = 'material';
@@ -90,7 +89,7 @@ export class World {
     private look: Theme,
     private readonly shared: SharedUniforms,
   ) {
-    this.ground = new Ground(look);
+    this.ground = new Ground(look, shared.sun);
     this.table = new BodyTable(shared.look);
     this.particles = new JoinedParticles(shared);
     this.grids = new JoinedGrids(shared);
@@ -146,8 +145,8 @@ export class World {
     this.looks = new Map(
       description.materials.map(({ name, appearance }) => [name, lookOf(appearance)]),
     );
-    this.shared.detail.value = vat ? kDetail * Math.max(...sizeOf(vat)) : 0;
     this.time = undefined;
+    this.shared.detail.value = vat ? kDetail * Math.max(...sizeOf(vat)) : 0;
     const old = this.bodies;
     this.bodies = new Map();
     const counts: Record<BodyKindName, number> = { liquid: 0, deformable: 0, rigid: 0 };
@@ -197,7 +196,8 @@ export class World {
       if (block.kind === BodyKind.vat) this.moveVat(block.offset);
       else this.showBlock(block, frame.header, seconds);
     }
-    if (this.contents.isEmpty()) this.settle();
+    this.contents.follow([...this.bodies.values()], this.vat ? this.seen : new Box3(), seconds);
+    if (this.seen.isEmpty()) this.settle();
     this.marks.follow(this.extent);
     return true;
   }
@@ -232,7 +232,7 @@ export class World {
 
   /** The box for the camera. */
   get framed(): Box3 {
-    return framedBox(this.seen, this.contents);
+    return this.contents.framedIn(this.seen);
   }
 
   pick(ray: Ray): Picked | undefined {
@@ -331,6 +331,7 @@ export class World {
       clarity: this.shared.behind.clarity.value,
       paint: 0,
       showsNormals: false,
+      height: this.height,
     };
   }
 
@@ -376,17 +377,16 @@ export class World {
     );
   }
 
-  /** Measures the bodies in the first frame. Without a vat, they define the extent and the ground. */
+  /** Without a vat, the bodies in the first frame define the extent and the ground. */
   private settle(): void {
-    for (const view of this.bodies.values()) view.places.expand(this.contents);
-    if (!this.seen.isEmpty() || this.contents.isEmpty()) return;
-    this.seen.copy(this.contents);
+    if (this.contents.first.isEmpty()) return;
+    this.seen.copy(this.contents.first);
     this.ground.fit(this.seen);
   }
 
   private clear(): void {
     this.seen.makeEmpty();
-    this.contents.makeEmpty();
+    this.contents.clear();
     this.drawing.clear();
     for (const view of this.bodies.values()) view.dispose();
     this.bodies = new Map();

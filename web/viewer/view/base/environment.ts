@@ -1,8 +1,9 @@
 import { kSun } from './light';
 
 /**
- * The surroundings in GLSL: a studio with a bright ceiling, a window on the side of the sun and a
- * darker floor. `environment` blurs it for rough surfaces. `lit` shades a surface in world axes.
+ * The surroundings in GLSL: a studio with a bright ceiling, a window on the side of the sun, a lamp
+ * behind the scene and a darker floor. `environment` blurs it for rough surfaces. `lit` shades a
+ * surface in world axes.
  */
 export const kEnvironment = /* glsl */ `
   vec3 environment(vec3 way, float rough) {
@@ -13,6 +14,9 @@ export const kEnvironment = /* glsl */ `
     float window = smoothstep(0.80 - 0.8 * soft, 0.90 + 0.3 * soft, dot(way, ${kSun}));
     float strip = smoothstep(0.35 + soft, 0.0, abs(dot(way, vec3(0.86, -0.38, 0.0)) - 0.75));
     light += window * mix(vec3(1.5, 1.45, 1.35), vec3(0.25), rough);
+    // A lamp behind the scene, which level surfaces reflect.
+    vec2 lamp = smoothstep(vec2(-soft), vec2(soft), vec2(0.62, 0.22) - abs(way.xz - vec2(0.1, 0.52)));
+    light += (1.0 - 0.8 * rough) * step(0.0, way.y) * lamp.x * lamp.y * vec3(0.62, 0.62, 0.6);
     return light + (1.0 - rough) * up * strip * vec3(0.22, 0.24, 0.27);
   }
 
@@ -28,8 +32,8 @@ export const kEnvironment = /* glsl */ `
     float visible = 0.25 / ((facing * (1.0 - k) + k) * (toward * (1.0 - k) + k));
     vec3 mirror = mix(vec3(0.04), colour, metal);
     vec3 grazing = mirror + (max(vec3(1.0 - rough), mirror) - mirror) * pow(1.0 - facing, 5.0);
-    vec3 sky = mix(vec3(0.34, 0.32, 0.32), vec3(0.60, 0.63, 0.68), 0.5 + 0.5 * n.z);
-    vec3 diffuse = colour * (1.0 - metal) * (sky * open + 0.62 * toward);
+    vec3 sky = mix(vec3(0.27, 0.25, 0.24), vec3(0.48, 0.53, 0.60), 0.5 + 0.5 * n.z);
+    vec3 diffuse = colour * (1.0 - metal) * (sky * open + vec3(0.86, 0.81, 0.73) * toward);
     vec3 bounced = environment(reflect(-eye, n), rough) * grazing * mix(open, 1.0, 0.3);
     return diffuse + bounced + min(lobe * visible, 6.0) * toward * mirror;
   }

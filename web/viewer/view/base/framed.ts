@@ -1,4 +1,4 @@
-import { Box3 } from 'three';
+import { Box3, Vector3 } from 'three';
 
 /** Space above the initial contents, relative to the height of the vat. */
 const kAbove = 0.08;
@@ -10,6 +10,51 @@ export function framedBox(vat: Box3, contents: Box3): Box3 {
   const height = vat.max.z - vat.min.z;
   box.max.z = Math.min(vat.max.z, contents.max.z + kAbove * height);
   return box;
+}
+
+/** Space beside bodies, relative to their width or depth, and the least width relative to the vat. */
+const kBeside = 0.12;
+const kLeastWidth = 0.25;
+
+/** Time in which the view of bodies that come together shrinks to 1 / e [s]. */
+const kShrinking = 0.8;
+
+/**
+ * The part of a vat around its bodies: it grows at once, so that all bodies remain in view, and
+ * shrinks slowly.
+ */
+export class BodiesBox {
+  readonly box = new Box3();
+
+  /** Follows the bodies in a frame, `seconds` after the previous one. */
+  follow(vat: Box3, bodies: Box3, seconds: number): void {
+    if (bodies.isEmpty()) return;
+    const wanted = roomOf(vat, bodies);
+    if (this.box.isEmpty() || seconds < 0) this.box.copy(wanted);
+    const rest = Math.exp(-seconds / kShrinking);
+    this.box.min.lerp(wanted.min, 1 - rest).min(wanted.min);
+    this.box.max.lerp(wanted.max, 1 - rest).max(wanted.max);
+  }
+
+  clear(): void {
+    this.box.makeEmpty();
+  }
+}
+
+/** Returns the part of a vat, from its floor on, with bodies and space around them. */
+function roomOf(vat: Box3, bodies: Box3): Box3 {
+  const size = vat.getSize(new Vector3());
+  const room = bodies.clone();
+  const width = bodies.getSize(new Vector3());
+  const beside = new Vector3(
+    Math.max(kBeside * width.x, (kLeastWidth * size.x - width.x) / 2),
+    Math.max(kBeside * width.y, (kLeastWidth * size.y - width.y) / 2),
+    kAbove * size.z,
+  );
+  room.min.sub(beside).max(vat.min);
+  room.max.add(beside).min(vat.max);
+  room.min.z = vat.min.z;
+  return room;
 }
 
 /** The box that the camera keeps in view, until the camera is moved. */

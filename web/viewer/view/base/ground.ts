@@ -1,31 +1,56 @@
-import { Color, Mesh, PlaneGeometry, ShaderMaterial, Vector2 } from 'three';
-import type { Box3 } from 'three';
+import { Color, ShaderMaterial, Vector2 } from 'three';
+import type { Box3, BufferGeometry, Mesh } from 'three';
+import { screenMesh } from './screen';
+import { kSunlight } from './sun_uniforms';
+import type { SunUniforms } from './sun_uniforms';
 import type { Theme } from './theme';
 
 const kVertexShader = /* glsl */ `
-  out vec2 at;
+  out vec3 way;
   void main() {
-    vec4 world = modelMatrix * vec4(position, 1.0);
-    at = world.xy;
-    gl_Position = projectionMatrix * viewMatrix * world;
+    vec4 far = inverse(projectionMatrix) * vec4(position.xy, 1.0, 1.0);
+    way = transpose(mat3(viewMatrix)) * (far.xyz / far.w);
+    gl_Position = vec4(position.xy, 1.0, 1.0);
   }
 `;
 
-/** Lines of one pixel, fading with the distance from the centre. */
+/**
+ * The ground has a pool of light around the scene, lines of one pixel that fade with the distance,
+ * and the shadows of the scene. Far from the scene, ground and sky have the same colour.
+ */
 const kFragmentShader = /* glsl */ `
-  in vec2 at;
+  in vec3 way;
   uniform vec2 middle;
+  uniform float height;
   uniform float spacing;
   uniform float extent;
   uniform vec3 stage;
+  uniform vec3 ground;
+  uniform vec3 sky;
   uniform vec3 line;
+  uniform vec3 shadow;
+  ${kSunlight}
 
   void main() {
+    vec3 ray = normalize(way);
+    bool is_ground = ray.z * (cameraPosition.z - height) < 0.0;
+    float steep = is_ground ? ray.z : -1.0; // for the derivatives at the horizon
+    vec2 at = cameraPosition.xy - (cameraPosition.z - height) / steep * ray.xy;
     vec2 steps = at / spacing;
     vec2 away = abs(fract(steps - 0.5) - 0.5) / fwidth(steps);
     float on_line = 1.0 - min(min(away.x, away.y), 1.0);
-    float near = 1.0 - smoothstep(0.35 * extent, extent, distance(at, middle));
-    gl_FragColor = vec4(mix(stage, line, on_line * near), 1.0);
+    vec3 light = mix(stage, sky, smoothstep(0.0, 0.5, ray.z));
+    if (is_ground) {
+      float out_of = distance(at, middle) / extent;
+      float near = exp(-1.4 * out_of * out_of);
+      light = mix(stage, ground, near);
+      vec3 point = vec3(at, height);
+      float dark = 0.75 * near * (1.0 - sunlight(point, vec3(0.0, 0.0, 1.0)));
+      vec3 tint = through_liquids(point);
+      light = mix(light, shadow, dark) * mix(vec3(1.0), tint, 0.5 * smoothstep(0.1, 0.6, 1.0 - tint.r));
+      light = mix(light, line, 0.7 * on_line * (1.0 - smoothstep(0.35, 1.0, out_of)) * (1.0 - dark));
+    }
+    gl_FragColor = vec4(light, 1.0);
     #include <colorspace_fragment>
   }
 `;
@@ -37,46 +62,50 @@ export function roundLength(length: number): number {
   return power * (digit < 1.5 ? 1 : digit < 3.5 ? 2 : digit < 7.5 ? 5 : 10);
 }
 
-/** A fixed grid, which makes the motion of the vat visible. */
+/** The surroundings: a fixed grid on the ground, which makes the motion of the vat visible, and a sky. */
 export class Ground {
-  readonly mesh: Mesh<PlaneGeometry, ShaderMaterial>;
+  readonly mesh: Mesh<BufferGeometry, ShaderMaterial>;
 
-  constructor(look: Theme) {
+  constructor(look: Theme, sun: SunUniforms) {
     const material = new ShaderMaterial({
       vertexShader: kVertexShader,
       fragmentShader: kFragmentShader,
       uniforms: {
+        ...sun,
         middle: { value: new Vector2() },
+        height: { value: 0 },
         spacing: { value: 1 },
         extent: { value: 1 },
         stage: { value: new Color() },
+        ground: { value: new Color() },
+        sky: { value: new Color() },
         line: { value: new Color() },
+        shadow: { value: new Color() },
       },
       depthWrite: false,
       depthTest: false,
     });
-    this.mesh = new Mesh(new PlaneGeometry(2, 2), material);
+    this.mesh = screenMesh(material);
     this.mesh.renderOrder = -1;
     this.paint(look);
   }
 
-  /** Places the grid below the box, extending beyond it. */
+  /** Places the ground below the box. */
   fit(box: Box3): void {
     const width = Math.max(box.max.x - box.min.x, box.max.y - box.min.y);
-    const x = (box.min.x + box.max.x) / 2;
-    const y = (box.min.y + box.max.y) / 2;
-    const extent = 1.8 * width;
-    const { middle, spacing, extent: reach } = this.mesh.material.uniforms;
-    (middle!.value as Vector2).set(x, y);
+    const { middle, spacing, extent, height } = this.mesh.material.uniforms;
+    (middle!.value as Vector2).set((box.min.x + box.max.x) / 2, (box.min.y + box.max.y) / 2);
     spacing!.value = roundLength(width / 10);
-    reach!.value = extent;
-    this.mesh.position.set(x, y, box.min.z);
-    this.mesh.scale.setScalar(extent);
+    extent!.value = 1.8 * width;
+    height!.value = box.min.z;
   }
 
   paint(look: Theme): void {
-    const { stage, line } = this.mesh.material.uniforms;
+    const { stage, ground, sky, line, shadow } = this.mesh.material.uniforms;
     (stage!.value as Color).copy(look.stage);
+    (ground!.value as Color).copy(look.ground);
+    (sky!.value as Color).copy(look.sky);
     (line!.value as Color).copy(look.grid);
+    (shadow!.value as Color).copy(look.shadow);
   }
 }

@@ -71,4 +71,23 @@ export const kSunlight = /* glsl */ `
     float below = max(world.z - floor_z, 0.0) / ${kSun}.z;
     return exp(-liquid.rgb * above / (above + below));
   }
+
+  /** Distance of the samples for the curvature of liquids, relative to the map. */
+  const float focus = 0.008;
+
+  float depth_in_sun(vec2 at) {
+    return dot(texture(sun_liquid, at).rgb, vec3(1.0));
+  }
+
+  /** Returns the sun's light below liquids relative to that without their curvature, which focuses it. */
+  float caustic(vec3 world) {
+    vec2 at = (to_sun * vec4(world, 1.0)).xy;
+    float depth = depth_in_sun(at);
+    if (depth <= 0.0) return 1.0;
+    float aside = depth_in_sun(at + vec2(focus, 0.0)) + depth_in_sun(at - vec2(focus, 0.0)) +
+      depth_in_sun(at + vec2(0.0, focus)) + depth_in_sun(at - vec2(0.0, focus));
+    float bend = (depth - 0.25 * aside) / (depth + 0.05);
+    // The edges of the liquid in the map are blurred.
+    return clamp(1.0 + 4.0 * bend * smoothstep(0.2, 1.2, depth), 0.8, 1.5);
+  }
 `;

@@ -3,7 +3,12 @@ import './theme.css';
 
 /** Colours of the surroundings. */
 export interface Theme {
+  /** The ground and the sky far from the scene. */
   stage: Color;
+  /** The ground below the scene. */
+  ground: Color;
+  /** The sky above the horizon. */
+  sky: Color;
   floor: Color;
   shadow: Color;
   grid: Color;
@@ -15,6 +20,8 @@ export interface Theme {
 
 const kProperties: Readonly<Record<keyof Theme, string>> = {
   stage: '--view-stage',
+  ground: '--view-ground',
+  sky: '--view-sky',
   floor: '--view-floor',
   shadow: '--view-shadow',
   grid: '--view-grid',

@@ -1,5 +1,5 @@
-import { Vector3 } from 'three';
-import type { Box3, Object3D } from 'three';
+import { Box3, Vector3 } from 'three';
+import type { Object3D } from 'three';
 import { cloudOf } from '../base/footprint';
 import type { Footprint } from '../base/footprint';
 import type { BodyUniforms } from '../particles/impostor';
@@ -63,11 +63,14 @@ export class BodyPlaces {
     return meanOf(Array.from({ length: Math.ceil(count / every) }, (_, i) => this.at(i * every)));
   }
 
-  /** Extends the box to contain all particles. */
-  expand(box: Box3): void {
-    if (!this.group.visible) return;
-    for (let i = 0; i < this.columns.count; ++i) box.expandByPoint(this.at(i));
-    box.expandByScalar(this.radius);
+  /** Extends the box to contain all particles, or a sample of `most` of them. */
+  expand(box: Box3, most = Infinity): void {
+    const { count } = this.columns;
+    if (!this.group.visible || count === 0) return;
+    const every = Math.max(Math.ceil(count / most), 1);
+    const own = new Box3();
+    for (let i = 0; i < count; i += every) own.expandByPoint(this.at(i));
+    box.union(own.expandByScalar(this.radius));
   }
 
   private all(): Vector3[] {

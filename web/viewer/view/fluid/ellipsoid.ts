@@ -1,12 +1,14 @@
 import { kSquareOfParticle, kSquareVertices } from '../particles/impostor';
 import { kRow } from '../particles/texels';
 import { kMostShape, kMostShift } from './surface_shapes';
+import { kWallPlanes } from './wall_uniforms';
 
 /** A square around each particle's ellipsoid that faces the eye; see SurfaceShapes. */
 export const kEllipsoidVertexShader = /* glsl */ `
   ${kSquareOfParticle}
   uniform highp usampler2D shape_texels;
   uniform float radius;
+  ${kWallPlanes}
   flat out vec3 view_center;
   /** From view axes to those in which the ellipsoid is a sphere of radius 1. */
   flat out mat3 to_sphere;
@@ -14,6 +16,12 @@ export const kEllipsoidVertexShader = /* glsl */ `
   flat out float foam;
   flat out float lone;
   out vec3 view_point;
+
+  /** Returns the additional semi-axes of a particle beside walls, so that it fills their corners. */
+  vec3 reach_to_walls(vec3 world) {
+    vec3 away = min(world - wall_low, wall_high - world) / size;
+    return 0.6 * (1.0 - smoothstep(1.3, 2.2, away));
+  }
 
   vec2 entries(uint bits) {
     return ${kMostShape}.0 * unpackSnorm2x16(bits);
@@ -40,6 +48,10 @@ export const kEllipsoidVertexShader = /* glsl */ `
     world += size * ${kMostShift}.0 / 511.0 * (shift - 512.0);
     foam = froth.x;
     lone = froth.y;
+    vec3 reach = reach_to_walls(world);
+    shape[0].x += reach.x;
+    shape[1].y += reach.y;
+    shape[2].z += reach.z;
     mat3 turn = mat3(viewMatrix);
     mat3 ellipsoid = size * turn * shape * transpose(turn);
     to_sphere = inverse(ellipsoid);

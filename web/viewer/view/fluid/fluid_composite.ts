@@ -1,5 +1,6 @@
 import { Color, Matrix4, ShaderMaterial, Vector3 } from 'three';
 import { kEnvironment } from '../base/environment';
+import { kNoise } from '../colour/noise';
 import { kSun } from '../base/light';
 import { kScreenVertexShader } from '../base/screen';
 import { kSunlight } from '../base/sun_uniforms';
@@ -24,6 +25,7 @@ const kSurface = /* glsl */ `
   uniform float radius;
   uniform bool shows_normals;
   uniform vec3 ground;
+  uniform float height;
 
   vec3 ray_at(vec2 place) {
     vec4 far = projectionMatrixInverse * vec4(2.0 * place - 1.0, 1.0, 1.0);
@@ -84,30 +86,33 @@ const kSurface = /* glsl */ `
 const kLight = /* glsl */ `
   ${kEnvironment}
   ${kSunlight}
+  ${kNoise}
 
   /**
    * Returns the place in the picture where the refracted ray ends: after the length \`inside\` [m]
    * in the liquid, or at a wall or the floor. Long rays would hit other objects than the thickness
-   * is measured for.
+   * is measured for. Behind the liquid, the ray goes on for the length \`beyond\`, bent once more.
    */
-  vec2 refracted(vec3 point, vec3 ray, vec3 normal, float inside, float front) {
+  vec2 refracted(vec3 point, vec3 ray, vec3 normal, float inside, float beyond, float front) {
     mat3 to_world = transpose(mat3(viewMatrix));
     vec3 way = refract(ray, normal, 0.75);
-    float length = min(min(inside, 4.0 * radius), max(exit_of(eye + to_world * point, to_world * way), 0.0));
-    vec4 clip = projectionMatrix * vec4(point + length * way, 1.0);
+    float length = min(min(inside, 9.0 * radius), max(exit_of(eye + to_world * point, to_world * way), 0.0));
+    vec3 after = normalize(2.0 * way - ray);
+    vec4 clip = projectionMatrix * vec4(point + length * way + beyond * after, 1.0);
     vec2 bent = clamp(0.5 + 0.5 * clip.xy / clip.w, 0.001, 0.999);
     // Objects in front of the liquid are not refracted.
     return texture(behind_depth, bent).r < front ? at : bent;
   }
 
   /** \`glass\`: the share of a wall, through which the liquid is seen undistorted. */
-  vec3 light_of(vec3 point, vec3 normal, vec4 sum, float foam, float front, float glass) {
+  vec3 light_of(vec3 point, vec3 normal, vec4 sum, float room, float foam, float front, float glass) {
     vec3 ray = normalize(point);
     mat3 to_world = transpose(mat3(viewMatrix));
     vec3 n = to_world * normal;
     vec3 world = eye + to_world * point;
     vec3 colour = sum.rgb / sum.w;
-    vec2 bent = refracted(point, ray, normal, (1.0 - glass) * sum.w, front);
+    float beyond = clamp(room - 2.0 * sum.w, 0.0, 30.0 * radius);
+    vec2 bent = refracted(point, ray, normal, (1.0 - glass) * sum.w, (1.0 - glass) * beyond, front);
     vec3 through = texture(behind, bent).rgb;
     // Beside an object in the liquid, the ray passes more liquid than in front of the object.
     float deep = max(sum.w, texture(thickness, bent).w) / clarity;
@@ -117,10 +122,12 @@ const kLight = /* glsl */ `
 
     vec3 passed = pow(clamp(colour, 0.03, 0.95), vec3(1.3 * deep)) * (1.0 - paint);
     // Light that small particles and bubbles in the liquid scatter.
-    float murk = 1.0 - (1.0 - max(paint, 0.08)) * exp(-0.9 * deep) * (1.0 - paint);
+    float murk = 1.0 - (1.0 - max(paint, 0.04)) * exp(-0.6 * deep) * (1.0 - paint);
+    // Less light reaches the depth of a liquid.
+    float deepness = mix(mix(0.45, 1.0, smoothstep(0.0, 0.6, (world.z - floor_z) / height)), 1.0, paint);
     vec3 pale = mix(colour, vec3(dot(colour, vec3(0.2, 0.6, 0.2)) + 0.15), 0.1);
-    vec3 own = mix(pale, colour, paint) * (0.25 + 0.30 * sky + 0.70 * toward);
-    vec3 body = through * passed * (1.0 - 0.5 * murk) + own * murk * mix(0.8, 1.0, paint);
+    vec3 own = mix(pale, colour, paint) * (0.25 + 0.30 * sky + 0.70 * toward) * deepness;
+    vec3 body = through * passed * mix(1.0, deepness, 0.6 * (1.0 - exp(-deep))) * (1.0 - 0.5 * murk) + own * murk * mix(0.8, 1.0, paint);
 
     float facing = clamp(dot(normal, -ray), 0.0, 1.0);
     float mirror = (0.02 + 0.98 * pow(1.0 - facing, 5.0)) * mix(1.0, 0.4, paint);
@@ -130,7 +137,11 @@ const kLight = /* glsl */ `
     float shine = pow(max(dot(bounced, ${kSun}), 0.0), 250.0);
     vec3 light = mix(body, around, mirror) + 1.6 * shine * shade * (1.0 - 0.6 * paint);
     vec3 white = vec3(0.96, 0.98, 1.0) * (0.74 + 0.14 * sky + 0.14 * toward);
-    return mix(light, white, foam * (1.0 - glass) * (1.0 - paint)); // foam is not at the glass
+    float froth = foam * (1.0 - glass) * (1.0 - paint); // foam is not at the glass
+    if (froth <= 0.02) return light;
+    // Foam has bubbles.
+    float bubbles = rough_noise(world / (0.5 * radius));
+    return mix(light, white, smoothstep(0.15, 0.75, froth * (0.5 + bubbles)));
   }
 
   void main() {
@@ -151,6 +162,8 @@ const kLight = /* glsl */ `
       float front = 0.5 * clip.z / clip.w + 0.5;
       if (front < window_depth) {
         sum /= min(max(surface.g, ${kOutline}) + 0.1, 1.0); // the blur has spread the edge
+        // The blur is thinner than the liquid at a wall.
+        sum *= max(sum.w, 3.0 * radius * glass) / sum.w;
         // Particles in a narrow gap before an object are wider than the gap.
         float room = distance(window_at(window_depth), point);
         sum *= min(1.0, room / sum.w);
@@ -160,7 +173,7 @@ const kLight = /* glsl */ `
           gl_FragColor = vec4(0.5 + 0.5 * transpose(mat3(viewMatrix)) * normal, 1.0);
           return;
         }
-        light = mix(light, light_of(point, normal, sum, foam, front, glass), cover);
+        light = mix(light, light_of(point, normal, sum, room, foam, front, glass), cover);
         window_depth = front;
       }
     }
@@ -189,6 +202,7 @@ export function fluidCompositeMaterial(sun: SunUniforms, walls: WallUniforms): S
       radius: { value: 1 },
       shows_normals: { value: false },
       ground: { value: new Color() },
+      height: { value: 1 },
     },
   });
 }

@@ -16,14 +16,15 @@ const kDepth = /* glsl */ `
     // Particles can be in the walls by a part of their radius.
     if (all(greaterThan(middle, wall_low - size)) && all(lessThan(middle, wall_high + size))) {
       Entry entry = entry_of(cameraPosition, way);
-      if (farther < entry.at || nearer > exit_of(cameraPosition, way)) discard;
+      float leave = exit_of(cameraPosition, way);
+      if (entry.at > leave || farther < entry.at || nearer > leave) discard;
       float inward = (nearer - entry.at) * -dot(way, entry.normal);
       if (entry.at > 0.0 && inward < ${kAtWall} * size) nearer = entry.at;
     }
     vec3 point = nearer * ray;
     gl_FragDepth = depth_of(point);
-    // The blur of the outline removes no isolated drops. They are white, as spray.
-    nearest = vec4(-point.z, 1.0 + lone, max(foam, 0.6 * lone), 0.0);
+    // The blur of the outline removes no isolated drops. They are paler, as spray.
+    nearest = vec4(-point.z, 1.0 + lone, max(foam, 0.2 * lone), 0.0);
   }
 `;
 

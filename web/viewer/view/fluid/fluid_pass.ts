@@ -53,6 +53,8 @@ export interface FluidLook {
   paint: number;
   /** Whether colours are the normals of the surface: (1 + n) / 2 in world axes. */
   showsNormals: boolean;
+  /** Height of the scene [m]. */
+  height: number;
 }
 
 /**
@@ -186,6 +188,7 @@ export class FluidPass {
     uniforms.shows_normals!.value = look.showsNormals;
     uniforms.radius!.value = look.radius;
     uniforms.ground!.value = this.clearColour;
+    uniforms.height!.value = look.height;
     this.smoother.visible = false;
     this.result.visible = true;
     renderer.setRenderTarget(null);

@@ -32,13 +32,18 @@ export function setWalls(
   if (!hasLid) wall_high.value.z = kFar;
 }
 
+/** The uniforms in GLSL. */
+export const kWallPlanes = /* glsl */ `
+  uniform vec3 wall_low;
+  uniform vec3 wall_high;
+`;
+
 /**
  * The eye's rays and the walls, in GLSL. Water in a glass vat has flat sides, but drawn spheres
  * bulge through them and have gaps between them.
  */
 export const kWalls = /* glsl */ `
-  uniform vec3 wall_low;
-  uniform vec3 wall_high;
+  ${kWallPlanes}
 
   /** A plane at which the ray enters the vat: distance along the ray, and normal in world axes. */
   struct Entry {

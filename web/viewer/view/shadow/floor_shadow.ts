@@ -23,13 +23,15 @@ const kFragmentShader = /* glsl */ `
   ${kSunlight}
 
   void main() {
-    float dark = 0.85 * (1.0 - sunlight(at, vec3(0.0, 0.0, 1.0)));
+    float dark = 0.9 * (1.0 - sunlight(at, vec3(0.0, 0.0, 1.0)));
     vec2 steps = (at.xy - floor_bounds.xy) / tile;
     vec2 away = abs(fract(steps - 0.5) - 0.5) / max(fwidth(steps), vec2(0.012));
     float joint = 1.0 - smoothstep(0.6, 1.6, min(away.x, away.y));
-    vec3 light = mix(floor_colour, shadow_colour, max(dark, 0.5 * joint));
+    float shade = 0.94 + 0.06 * fract(17.31 * sin(dot(floor(steps), vec2(12.99, 78.23))));
+    vec3 light = shade * mix(floor_colour, shadow_colour, max(dark, 0.6 * joint));
     // The sky lights the floor too.
-    gl_FragColor = vec4(light * mix(vec3(1.0), through_liquids(at), 0.6), 1.0);
+    light *= mix(vec3(1.0), through_liquids(at), 0.6) * mix(1.0, caustic(at), 0.8);
+    gl_FragColor = vec4(light, 1.0);
     #include <colorspace_fragment>
   }
 `;
