@@ -22,6 +22,9 @@ const kTicksPerSecond = 50;
 /** Ticks of a request, which must be answered in time. */
 const kStep = 10;
 
+/** Ticks before each picture that are displayed one by one, because foam results from them. */
+const kShown = 3;
+
 /** The looks as settings of the view. */
 const kLooks: Readonly<Record<string, string>> = {
   default: 'liquid:fluid,orbit:off',
@@ -95,9 +98,12 @@ async function draw(scene: string): Promise<void> {
   let tick = 0;
   for (const [n, moment] of kMoments.entries()) {
     const next = Math.round(moment * kTicksPerSecond);
-    await advance(observer, next - tick);
-    tick = next;
-    await viewer.untilTick(tick, tick);
+    await advance(observer, next - tick - kShown);
+    for (tick = next - kShown; tick < next;) {
+      await observer.request('control.step', { ticks: 1 });
+      ++tick;
+      await viewer.untilTick(tick, tick);
+    }
     for (const look of values.look) {
       await viewer.setView(kLooks[look]!);
       if (look === 'surface') await viewer.page.waitForTimeout(kSurfacesMs);

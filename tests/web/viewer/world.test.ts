@@ -41,12 +41,12 @@ it('frames rigid bodies at their poses in the first frame', () => {
   expect(world.framed.max.z).toBeCloseTo(0.6 + 0.1 + 0.08); // the top of the ball, and some space
 });
 
-/** A world with one body of a particle at this position, in a vat of 1 m. */
-function worldWith(kind: 'rigid' | 'liquid', radius: number): World {
+/** A world with one body of one particle, in a vat of 1 m. */
+function worldWith(kind: 'rigid' | 'liquid', radius: number, lid = false): World {
   const world = new World(kTheme, sharedUniforms());
   const local = kind === 'rigid' ? { local_positions: [0, 0, 0] } : {};
   const body = { body: 1, name: 'body', kind, material: 'wood', particles: 1, radius, ...local };
-  world.describe(described({}, { bodies: [body] }));
+  world.describe(described({}, { bodies: [body], vat: { min: [0, 0, 0], max: [1, 1, 1], lid } }));
   return world;
 }
 
@@ -67,8 +67,24 @@ it('frames the space around rigid bodies, and follows them', () => {
   expect(world.framed.min.x).toBeGreaterThan(0.5);
 });
 
-it('frames the whole vat if a liquid covers the floor', () => {
-  const world = worldWith('liquid', 0.1);
-  world.show(frameOf(1, { 1: 2 }));
-  expect([world.framed.min.x, world.framed.max.x]).toEqual([0, 1]);
+const width = ({ framed }: World): number => framed.max.x - framed.min.x;
+
+it('frames the whole vat if a liquid covers the floor, but the space around a drop', () => {
+  const widths = [0, 6].map((height) => {
+    const world = worldWith('liquid', 0.1);
+    const frame = frameOf(1, { 1: 4 });
+    (frame.blocks[0] as { positions: Uint16Array }).positions[2] = height; // in 0.1 m
+    world.show(frame);
+    return width(world);
+  });
+  expect(widths[0]).toBe(1);
+  expect(widths[1]).toBeCloseTo(0.25, 9);
+});
+
+it('frames the whole vat if it is closed and has no liquid', () => {
+  const world = worldWith('rigid', 0.1, true);
+  const { header } = frameOf(1, {});
+  const pose = { position: [0.2, 0.5, 0.1], orientation: [1, 0, 0, 0] };
+  world.show({ header, blocks: [{ kind: BodyKind.rigid, body: 1, ...pose }] } as unknown as Frame);
+  expect(width(world)).toBe(1);
 });

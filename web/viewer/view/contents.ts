@@ -13,14 +13,19 @@ export class Contents {
   /** The extent of the bodies in the first frame. */
   readonly first = new Box3();
   private readonly room = new BodiesBox();
-  /** Whether the camera follows the bodies, because they are in a vat whose floor no liquid covers. */
+  /** Whether the camera follows the bodies. It does not if the walls of the vat hold them. */
   private followsBodies = false;
 
-  /** Follows the bodies in a frame, `seconds` after the previous one. `vat` is empty without a vat. */
-  follow(bodies: readonly BodyView[], vat: Box3, seconds: number): void {
+  /**
+   * Follows the bodies in a frame, `seconds` after the previous one. `vat` is empty without a vat,
+   * and `lid` is whether it is closed.
+   */
+  follow(bodies: readonly BodyView[], vat: Box3, lid: boolean, seconds: number): void {
     if (this.first.isEmpty()) {
       this.first.copy(extentOf(bodies));
-      this.followsBodies = !vat.isEmpty() && !bodies.some((body) => isAtFloor(body, vat));
+      const liquids = bodies.filter(({ description }) => description.kind === 'liquid');
+      const isHeld = liquids.length > 0 ? liquids.some((body) => isAtFloor(body, vat)) : lid;
+      this.followsBodies = !vat.isEmpty() && !isHeld;
     }
     if (this.followsBodies) this.room.follow(vat, extentOf(bodies, kSample), seconds);
   }
@@ -46,8 +51,7 @@ function extentOf(bodies: readonly BodyView[], most = Infinity): Box3 {
 }
 
 function isAtFloor(body: BodyView, vat: Box3): boolean {
-  const { kind, radius } = body.description;
-  if (kind !== 'liquid') return false;
+  const { radius } = body.description;
   const box = extentOf([body]);
   return !box.isEmpty() && box.min.z < vat.min.z + kAtFloor * radius;
 }

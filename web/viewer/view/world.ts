@@ -196,7 +196,9 @@ export class World {
       if (block.kind === BodyKind.vat) this.moveVat(block.offset);
       else this.showBlock(block, frame.header, seconds);
     }
-    this.contents.follow([...this.bodies.values()], this.vat ? this.seen : new Box3(), seconds);
+    const { vat } = this.description;
+    const box = vat ? this.seen : new Box3();
+    this.contents.follow([...this.bodies.values()], box, vat?.lid ?? false, seconds);
     if (this.seen.isEmpty()) this.settle();
     this.marks.follow(this.extent);
     return true;

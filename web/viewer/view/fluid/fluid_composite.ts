@@ -91,14 +91,13 @@ const kLight = /* glsl */ `
   /**
    * Returns the place in the picture where the refracted ray ends: after the length \`inside\` [m]
    * in the liquid, or at a wall or the floor. Long rays would hit other objects than the thickness
-   * is measured for. Behind the liquid, the ray goes on for the length \`beyond\`, bent once more.
+   * is measured for. Behind a drop, the ray is bent once more and goes on for the length \`beyond\`.
    */
   vec2 refracted(vec3 point, vec3 ray, vec3 normal, float inside, float beyond, float front) {
     mat3 to_world = transpose(mat3(viewMatrix));
     vec3 way = refract(ray, normal, 0.75);
-    float length = min(min(inside, 9.0 * radius), max(exit_of(eye + to_world * point, to_world * way), 0.0));
-    vec3 after = normalize(2.0 * way - ray);
-    vec4 clip = projectionMatrix * vec4(point + length * way + beyond * after, 1.0);
+    float length = min(min(inside, 4.0 * radius), max(exit_of(eye + to_world * point, to_world * way), 0.0));
+    vec4 clip = projectionMatrix * vec4(point + length * way + beyond * normalize(2.0 * way - ray), 1.0);
     vec2 bent = clamp(0.5 + 0.5 * clip.xy / clip.w, 0.001, 0.999);
     // Objects in front of the liquid are not refracted.
     return texture(behind_depth, bent).r < front ? at : bent;
@@ -111,7 +110,7 @@ const kLight = /* glsl */ `
     vec3 n = to_world * normal;
     vec3 world = eye + to_world * point;
     vec3 colour = sum.rgb / sum.w;
-    float beyond = clamp(room - 2.0 * sum.w, 0.0, 30.0 * radius);
+    float beyond = clamp(min(room, exit_of(world, to_world * ray)) - 1.6 * sum.w, 0.0, 12.0 * radius);
     vec2 bent = refracted(point, ray, normal, (1.0 - glass) * sum.w, (1.0 - glass) * beyond, front);
     vec3 through = texture(behind, bent).rgb;
     // Beside an object in the liquid, the ray passes more liquid than in front of the object.
