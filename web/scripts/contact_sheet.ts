@@ -22,9 +22,6 @@ const kTicksPerSecond = 50;
 /** Ticks of a request, which must be answered in time. */
 const kStep = 10;
 
-/** Ticks before each picture that are displayed one by one, because foam results from them. */
-const kShown = 3;
-
 /** The looks as settings of the view. */
 const kLooks: Readonly<Record<string, string>> = {
   default: 'liquid:fluid,orbit:off',
@@ -70,7 +67,7 @@ async function compose(rows: { name: string; pictures: string[] }[]): Promise<st
   return canvas.toDataURL('image/jpeg', 0.9);
 }
 
-/** Computes without pictures, which would delay the steps. */
+/** Computes without pictures, which would delay the steps. Foam results from the last two pictures. */
 async function advance(observer: Observer, ticks: number): Promise<void> {
   await viewer.brake(true);
   for (let left = ticks; left > 0; left -= kStep) {
@@ -98,12 +95,11 @@ async function draw(scene: string): Promise<void> {
   let tick = 0;
   for (const [n, moment] of kMoments.entries()) {
     const next = Math.round(moment * kTicksPerSecond);
-    await advance(observer, next - tick - kShown);
-    for (tick = next - kShown; tick < next;) {
-      await observer.request('control.step', { ticks: 1 });
-      ++tick;
-      await viewer.untilTick(tick, tick);
-    }
+    await advance(observer, next - tick - 1);
+    await viewer.untilTick(next - 1, next - 1);
+    await observer.request('control.step', { ticks: 1 });
+    await viewer.untilTick(next, next);
+    tick = next;
     for (const look of values.look) {
       await viewer.setView(kLooks[look]!);
       if (look === 'surface') await viewer.page.waitForTimeout(kSurfacesMs);

@@ -96,6 +96,30 @@ export function unroundness({ width, height, isLiquid }: Mask): number {
   return Math.max(...diameters.map((value) => Math.abs(value / mean - 1)));
 }
 
+/**
+ * Returns the number of pixels without liquid in a lower corner of a block of liquid, a square with
+ * this part of the block's width as its side, relative to the square. The greater of both corners.
+ */
+export function cornerGap({ width, isLiquid }: Mask, part: number): number {
+  const low = Math.floor(isLiquid.lastIndexOf(true) / width);
+  const extentAt = (y: number): [number, number] => {
+    const row = isLiquid.slice(y * width, (y + 1) * width);
+    return [row.indexOf(true), row.lastIndexOf(true)];
+  };
+  const [first, last] = extentAt(low);
+  const side = Math.round(part * (last - first));
+  // The sides of the block are inclined in perspective, but hardly within the square.
+  const [left, right] = extentAt(low - side);
+  const gaps = [left, right - side + 1].map((from) => {
+    let count = 0;
+    for (let y = low - side + 1; y <= low; ++y) {
+      for (let x = from; x < from + side; ++x) if (!isLiquid[y * width + x]) ++count;
+    }
+    return count;
+  });
+  return Math.max(...gaps) / side ** 2;
+}
+
 /** Normals with a smaller vertical coordinate point down. */
 const kDown = -0.4;
 

@@ -153,7 +153,10 @@ const kLight = /* glsl */ `
     // One pixel of the outline is partly covered.
     float edge = max(0.5 * fwidth(surface.g), 1e-3);
     float cover = smoothstep(${kOutline} - edge, ${kOutline} + edge, surface.g);
-    if (surface.r > 0.0 && cover > 0.0 && sum.w > 0.0) {
+    // The blur has spread the liquid beyond the walls of the vat.
+    vec3 way = transpose(mat3(viewMatrix)) * ray_at(at);
+    bool is_in_vat = entry_of(eye, way).at <= exit_of(eye, way);
+    if (surface.r > 0.0 && cover > 0.0 && sum.w > 0.0 && is_in_vat) {
       vec3 point = point_at(here, surface.r);
       vec3 normal = normal_at(here, surface.r);
       float glass = flatten(point, normal);

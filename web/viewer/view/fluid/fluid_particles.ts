@@ -9,8 +9,13 @@ import type { BehindUniforms } from './fluid_pass';
 /** Points that are nearer to a wall, in particle radii, are drawn at the wall. */
 const kAtWall = 1.2;
 
+/** Points that are nearer to two walls are in a corner [particle radii]; their additional coverage. */
+const kInCorner = 1.5;
+const kFirm = 1.6;
+
 const kDepth = /* glsl */ `
     if (inside <= 0.0) discard;
+    float firm = 1.0;
     vec3 way = transpose(mat3(viewMatrix)) * ray;
     vec3 middle = transpose(mat3(viewMatrix)) * view_center + cameraPosition;
     // Particles can be in the walls by a part of their radius.
@@ -20,11 +25,14 @@ const kDepth = /* glsl */ `
       if (entry.at > leave || farther < entry.at || nearer > leave) discard;
       float inward = (nearer - entry.at) * -dot(way, entry.normal);
       if (entry.at > 0.0 && inward < ${kAtWall} * size) nearer = entry.at;
+      vec3 place = cameraPosition + nearer * way;
+      vec3 near = step(min(place - wall_low, wall_high - place), vec3(${kInCorner} * size));
+      if (near.x + near.y + near.z > 1.0) firm += ${kFirm};
     }
     vec3 point = nearer * ray;
     gl_FragDepth = depth_of(point);
-    // The blur of the outline removes no isolated drops. They are paler, as spray.
-    nearest = vec4(-point.z, 1.0 + lone, max(foam, 0.2 * lone), 0.0);
+    // The blur of the outline removes no isolated drops and corners. Drops are paler, as spray.
+    nearest = vec4(-point.z, firm + lone, max(foam, 0.2 * lone), 0.0);
   }
 `;
 
