@@ -67,7 +67,7 @@ async function compose(rows: { name: string; pictures: string[] }[]): Promise<st
   return canvas.toDataURL('image/jpeg', 0.9);
 }
 
-/** Computes without pictures, which would delay the steps. Foam results from the last two pictures. */
+/** Computes without pictures, which would delay the steps. Foam results from the pictures after it. */
 async function advance(observer: Observer, ticks: number): Promise<void> {
   await viewer.brake(true);
   for (let left = ticks; left > 0; left -= kStep) {
@@ -95,9 +95,8 @@ async function draw(scene: string): Promise<void> {
   let tick = 0;
   for (const [n, moment] of kMoments.entries()) {
     const next = Math.round(moment * kTicksPerSecond);
-    await advance(observer, next - tick - 1);
-    await viewer.untilTick(next - 1, next - 1);
-    await observer.request('control.step', { ticks: 1 });
+    await advance(observer, next - tick - kStep);
+    await observer.request('control.step', { ticks: kStep });
     await viewer.untilTick(next, next);
     tick = next;
     for (const look of values.look) {

@@ -12,6 +12,8 @@ const kSample = 256;
 export class Contents {
   /** The extent of the bodies in the first frame. */
   readonly first = new Box3();
+  /** The extent of the bodies in the last frame. */
+  readonly extent = new Box3();
   private readonly room = new BodiesBox();
   /** Whether the camera follows the bodies. It does not if the walls of the vat hold them. */
   private followsBodies = false;
@@ -27,7 +29,8 @@ export class Contents {
       const isHeld = liquids.length > 0 ? liquids.some((body) => isAtFloor(body, vat)) : lid;
       this.followsBodies = !vat.isEmpty() && !isHeld;
     }
-    if (this.followsBodies) this.room.follow(vat, extentOf(bodies, kSample), seconds);
+    this.extent.copy(extentOf(bodies, kSample));
+    if (this.followsBodies) this.room.follow(vat, this.extent, seconds);
   }
 
   /** Returns the box for the camera in a scene of this extent. */

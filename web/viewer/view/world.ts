@@ -201,6 +201,7 @@ export class World {
     this.contents.follow([...this.bodies.values()], box, vat?.lid ?? false, seconds);
     if (this.seen.isEmpty()) this.settle();
     this.marks.follow(this.extent);
+    this.ground.shade(this.contents.extent);
     return true;
   }
 

@@ -1,5 +1,6 @@
-import { Color, ShaderMaterial, Vector2 } from 'three';
+import { Color, ShaderMaterial, Vector2, Vector3 } from 'three';
 import type { Box3, BufferGeometry, Mesh } from 'three';
+import { kSun } from './light';
 import { screenMesh } from './screen';
 import { kSunlight } from './sun_uniforms';
 import type { SunUniforms } from './sun_uniforms';
@@ -29,7 +30,19 @@ const kFragmentShader = /* glsl */ `
   uniform vec3 sky;
   uniform vec3 line;
   uniform vec3 shadow;
+  /** The extent of the objects that cast shadows. */
+  uniform vec3 low;
+  uniform vec3 high;
   ${kSunlight}
+
+  /** Whether an object can be between a point and the sun. The samples of the map take most time. */
+  bool is_in_shadow(vec3 point) {
+    vec3 to_low = (low - point) / ${kSun};
+    vec3 to_high = (high - point) / ${kSun};
+    vec3 enter = min(to_low, to_high);
+    vec3 leave = max(to_low, to_high);
+    return max(enter.x, max(enter.y, enter.z)) < min(leave.x, min(leave.y, leave.z));
+  }
 
   void main() {
     vec3 ray = normalize(way);
@@ -45,15 +58,21 @@ const kFragmentShader = /* glsl */ `
       float near = exp(-1.4 * out_of * out_of);
       light = mix(stage, ground, near);
       vec3 point = vec3(at, height);
-      float dark = 0.75 * near * (1.0 - sunlight(point, vec3(0.0, 0.0, 1.0)));
-      vec3 tint = through_liquids(point);
-      light = mix(light, shadow, dark) * mix(vec3(1.0), tint, 0.5 * smoothstep(0.1, 0.6, 1.0 - tint.r));
+      float dark = 0.0;
+      if (is_in_shadow(point)) {
+        dark = 0.75 * near * (1.0 - sunlight(point, vec3(0.0, 0.0, 1.0)));
+        vec3 tint = through_liquids(point);
+        light = mix(light, shadow, dark) * mix(vec3(1.0), tint, 0.5 * smoothstep(0.1, 0.6, 1.0 - tint.r));
+      }
       light = mix(light, line, 0.7 * on_line * (1.0 - smoothstep(0.35, 1.0, out_of)) * (1.0 - dark));
     }
     gl_FragColor = vec4(light, 1.0);
     #include <colorspace_fragment>
   }
 `;
+
+/** Space around objects that cast shadows, relative to their extent. */
+const kMargin = 0.05;
 
 /** Returns the number 1, 2 or 5 times a power of ten that is near `length`. */
 export function roundLength(length: number): number {
@@ -81,6 +100,8 @@ export class Ground {
         sky: { value: new Color() },
         line: { value: new Color() },
         shadow: { value: new Color() },
+        low: { value: new Vector3() },
+        high: { value: new Vector3() },
       },
       depthWrite: false,
       depthTest: false,
@@ -98,6 +119,14 @@ export class Ground {
     spacing!.value = roundLength(width / 10);
     extent!.value = 1.8 * width;
     height!.value = box.min.z;
+  }
+
+  /** Sets the extent of the objects that cast shadows on it, from a sample of their particles. */
+  shade({ min, max }: Box3): void {
+    const { low, high } = this.mesh.material.uniforms;
+    const more = kMargin * max.distanceTo(min);
+    (low!.value as Vector3).copy(min).subScalar(more);
+    (high!.value as Vector3).copy(max).addScalar(more);
   }
 
   paint(look: Theme): void {
