@@ -39,7 +39,8 @@ try {
     }
     await viewer.untilScene(name);
     await viewer.untilTick(kSeconds * 50);
-    const picture = await viewer.picture();
+    // The first picture of a scene waits for its shaders.
+    const picture = await viewer.stillPicture();
     const blank = await viewer.blankPage();
     const base64 = await blank.evaluate(compress, [picture, kMostBytes] as const);
     writeFileSync(`${kFolder}${name}.webp`, Buffer.from(base64, 'base64'));
