@@ -17,7 +17,7 @@ const kBeside = 0.12;
 const kLeastWidth = 0.25;
 
 /** Time in which the view of bodies that come together shrinks to 1 / e [s]. */
-const kShrinking = 0.8;
+const kShrinking = 0.5;
 
 /**
  * The part of a vat around its bodies: it grows at once, so that all bodies remain in view, and
