@@ -6,7 +6,7 @@ import type { BodyView } from './bodies/body_view';
 const kAtFloor = 2;
 
 /** The maximum number of particles of a body that are measured in each frame. */
-const kSample = 256;
+const kSample = 100;
 
 /** The extent of a scene's bodies, and the part of the scene that the camera shows. */
 export class Contents {
