@@ -1,6 +1,7 @@
 import { fileURLToPath } from 'node:url';
 import { defineConfig } from 'vite';
 import { compressedFiles } from './scripts/compressed_files';
+import { plainShaders } from './scripts/plain_shaders';
 
 const server = process.env.VAT_SERVER ?? 'http://127.0.0.1:8080';
 
@@ -20,7 +21,7 @@ export default defineConfig({
     assetsInlineLimit: 0,
     chunkSizeWarningLimit: 900,
   },
-  plugins: [compressedFiles(kBuilt)],
+  plugins: [plainShaders(), compressedFiles(kBuilt)],
   // `npm run dev` serves the page and connects to a running server.
   server: {
     proxy: { '/ws': { target: server, ws: true } },

@@ -1,6 +1,7 @@
 import { fileURLToPath } from 'node:url';
 import { defineConfig } from 'vite';
 import { exportPage, inlineWorkers } from './scripts/export_page';
+import { plainShaders } from './scripts/plain_shaders';
 
 const path = (name: string): string => fileURLToPath(new URL(name, import.meta.url));
 const kBuilt = path('dist/export');
@@ -24,5 +25,5 @@ export default defineConfig({
       fileName: () => 'player.js',
     },
   },
-  plugins: [inlineWorkers(), exportPage(kBuilt, path('viewer/exported/loader.ts'))],
+  plugins: [plainShaders(), inlineWorkers(), exportPage(kBuilt, path('viewer/exported/loader.ts'))],
 });
