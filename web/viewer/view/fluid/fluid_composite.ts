@@ -130,6 +130,7 @@ const kLight = /* glsl */ `
 
     float facing = clamp(dot(normal, -ray), 0.0, 1.0);
     float mirror = (0.02 + 0.98 * pow(1.0 - facing, 5.0)) * mix(1.0, 0.4, paint);
+    mirror *= 1.0 - 0.75 * glass; // at grazing angles, reflections would hide the liquid behind a wall
     vec3 bounced = reflect(to_world * ray, n);
     // Below the horizon, the surroundings are the ground of the picture.
     vec3 around = mix(ground, environment(bounced, 0.05), smoothstep(-0.1, 0.1, bounced.z));
