@@ -29,6 +29,11 @@ Real spread(const Model& model, const IndexRange& particles, Value&& value) {
 
 }  // namespace
 
+Real rate_of_motion(Real way2, Real change2, Real radius, Real mass) {
+  const Real noticed = kNoticed * radius;
+  return way2 > noticed * noticed * mass ? std::sqrt(std::sqrt(change2 / way2)) : 0;
+}
+
 void MotionProbe::begin(const State& state) {
   seen_ = 0;
   if (state.forces_current) see(state.now, state.forces);
@@ -49,12 +54,11 @@ Real MotionProbe::observed_rate(const Model& model) const {
     if (body.kind == BodyKind::rigid || body.particles.begin >= model.implicit_begin) continue;
     const Real way = spread(model, body.particles,
                             [&](Index i) { return Vec3(last_position_[i] - first_position_[i]); });
-    const Real noticed = kNoticed * model.radius[body.particles.begin];
-    if (!(way > noticed * noticed * body.mass)) continue;
     const Real change = spread(model, body.particles, [&](Index i) {
       return Vec3(model.inverse_mass[i] * (last_force_[i] - first_force_[i]));
     });
-    greatest = std::max(greatest, std::sqrt(std::sqrt(change / way)));
+    const Real radius = model.radius[body.particles.begin];
+    greatest = std::max(greatest, rate_of_motion(way, change, radius, body.mass));
   }
   return greatest;
 }

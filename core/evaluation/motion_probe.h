@@ -35,4 +35,9 @@ class MotionProbe {
   std::vector<Vec3> last_force_;
 };
 
+/// Returns omega of one body [rad/s] from sum m |change of position|^2 [kg m^2] and sum m |change
+/// of acceleration|^2 [kg m^2/s^4], both relative to the mean of the body. Returns 0 if `way2` is
+/// rounding for particles of this radius [m].
+Real rate_of_motion(Real way2, Real change2, Real radius, Real mass);
+
 }  // namespace vat

@@ -134,9 +134,10 @@ Status check_saved_hand(const HandMotion& hand) {
   const auto is_within = [](const Vec3& value, Real most) {
     return value.allFinite() && value.cwiseAbs().maxCoeff() <= most;
   };
-  constexpr Real kRounding = 1 + 1e-9;
+  constexpr Real kRoundingFactor = 1 + 1e-9;
   if (std::isfinite(hand.start) && is_within(hand.offset, 2 * kMaxLength) &&
-      is_within(hand.velocity, kRounding * kMaxHandSpeed) && is_within(hand.target, kMaxLength)) {
+      is_within(hand.velocity, kRoundingFactor * kMaxHandSpeed) &&
+      is_within(hand.target, kMaxLength)) {
     return {};
   }
   return bad_value("/hand", "must be a possible motion of the vat");

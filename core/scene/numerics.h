@@ -20,7 +20,7 @@ template <>
 inline constexpr std::array kNamesOf<IntegratorId>{"explicit_euler", "symplectic_euler",
                                                    "velocity_verlet", "heun", "runge_kutta_4"};
 
-/// Method that chooses step lengths; see core/stepping/step_control.h.
+/// Method that chooses step lengths; see core/stepping/control/step_control.h.
 enum class StepControl : std::uint8_t {
   fixed,  ///< every step has the nominal length
   /// The step of the whole scene is halved as often as its fastest process requires.

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "core/stepping/step_control.h"
+#include "core/stepping/control/step_control.h"
 
 namespace vat {
 

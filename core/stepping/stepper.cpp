@@ -150,15 +150,12 @@ Real Stepper::find_allowed_step(const StepInput& input, Real start) {
   const Real longest = last > 0 ? std::min(numerics.step, 2 * last) : numerics.step;
   find_present_steps(f, state, start, longest, input.step_bounds, input.guard_bounds,
                      present_steps_);
-  Real step = present_steps_.least();
+  const Real step = present_steps_.least();
   if (last == 0) {
-    constexpr Real kShort = 0.1;  // of the first step
-    state.history.observed_rate = probe_start(input, start, kShort * std::min(step, numerics.step));
+    const Real probed = kProbeShare * std::min(step, numerics.step);
+    state.history.observed_rate = probe_start(input, start, probed);
   }
-  if (state.history.observed_rate > 0) {
-    step = std::min(step, resolving_phase_of_places(numerics) / state.history.observed_rate);
-  }
-  return without_viscosity_solve(f.model, std::min(step, numerics.step));
+  return limit_by_rate(f.model, step, state.history.observed_rate);
 }
 
 bool Stepper::take_varied_step(const StepInput& input) {

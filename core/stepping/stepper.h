@@ -5,9 +5,9 @@
 
 #include "core/evaluation/force_model.h"
 #include "core/guard/guard.h"
+#include "core/stepping/control/step_control.h"
 #include "core/stepping/integrator.h"
 #include "core/stepping/local_step.h"
-#include "core/stepping/step_control.h"
 
 namespace vat {
 

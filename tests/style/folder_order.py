@@ -20,9 +20,10 @@ FOLDER_ORDER = (
     "core/liquid/surface", "core/contact", "core/contact/projection", "core/solid", "core/rigid",
     "core/external", "core/liquid/incompressible", "core/damping",
     # the step, and the simulation
-    "core/stepping", "core/sleep", "core/saved", "core/simulation", "core/coupling",
+    "core/stepping/control", "core/stepping", "core/sleep", "core/saved", "core/simulation", "core/coupling",
     # steps on other devices
-    "core/device/opencl", "core/device/tait", "core/device",
+    "core/device/opencl", "core/device/liquid", "core/device/tait", "core/device/incompressible",
+    "core/device",
     "protocol/json", "protocol/files", "protocol/scene", "protocol/convert", "protocol/tune", "protocol/published", "protocol/frame",
     "protocol/messages", "protocol/recording", "protocol/python/native",
     # the client library

@@ -6,15 +6,6 @@
 #include "core/support/check.h"
 
 namespace vat {
-namespace {
-
-// Bounds of longest_step_. Optimal steps of the solves of liquids are 0.5 to 2.3 long, and longer
-// in solves with small tolerances. Unknowns approach 0 by the ratio of the step and its bound.
-constexpr Real kLeastBound = 1.25;
-constexpr Real kGreatestBound = 8;
-constexpr Real kBoundOfOptimal = 1.25;  // bound / optimal length of the last step
-
-}  // namespace
 
 void Complementarity::resize(std::size_t count) {
   for (std::vector<Real>* column :

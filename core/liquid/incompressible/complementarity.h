@@ -33,6 +33,14 @@ struct SolveLimits {
 /// of the number of threads.
 class Complementarity {
  public:
+  // Bounds of longest_step_. Optimal steps of the solves of liquids are 0.5 to 2.3 long, and longer
+  // in solves with small tolerances. Unknowns approach 0 by the ratio of the step and its bound.
+  static constexpr Real kLeastBound = 1.25;
+  static constexpr Real kGreatestBound = 8;
+  static constexpr Real kBoundOfOptimal = 1.25;  ///< bound / optimal length of the last step
+  /// Share of the limit of the mean residual below which diagonal x / scale counts as 0.
+  static constexpr Real kNegligible = 0.1;
+
   std::vector<Real> x;
   std::vector<Real> excess;    ///< e(x)
   std::vector<Real> diagonal;  ///< diagonal of A, or an upper bound; above 0
@@ -90,9 +98,6 @@ class Complementarity {
   void take_step(Real length, TaskRunner* runner, SolveReport& report);
   template <class F>
   Real sum(TaskRunner* runner, F&& f);
-
-  /// Share of the limit of the mean residual below which diagonal x / scale counts as 0.
-  static constexpr Real kNegligible = 0.1;
 
   std::vector<Real> gradient_;
   std::vector<Real> direction_;

@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "core/guard/enforce_walls.h"
-#include "core/laws/vat_motion.h"
 #include "core/liquid/gas/liquid.h"
 #include "core/liquid/incompressible/pressure_response.h"
+#include "core/liquid/incompressible/solve_limits.h"
 #include "core/liquid/pairs/liquid_pairs.h"
 #include "core/liquid/pairs/weakly_compressible_pairs.h"
 #include "core/liquid/tait/weakly_compressible.h"
@@ -16,37 +16,7 @@
 namespace vat {
 namespace {
 
-constexpr Real kGreatestOverMean = 36;  // ratio of maximum and mean, for densities
-// Ratio of maximum and mean for changes of density, which the correction of positions removes.
-constexpr Real kGreatestDivergence = 200;
-// Bounds of loose tolerances. They keep the kinetic energy small that a step adds by removing
-// excess density, and start each solve from pressures that are close to its own.
-constexpr Real kMaxGreatestDivergence = 0.2;  // residual of one particle
-constexpr Real kMaxMeanDivergence = 0.003;    // mean residual
-constexpr Real kStartDivergence = 0.001;      // mean residual above which pressures are updated
-constexpr Real kDivergenceOfDensity = 0.25;   // mean divergence / density tolerance
-constexpr Real kMaxRemoval = 0.0015;          // relative excess density that one step removes
-constexpr Real kLeftAlone = 0.2;      // share of the density tolerance that the velocities leave
-constexpr Real kClosing = 0.5;        // share of a gap that is closed in one step
-constexpr int kMaxCorrections = 12;   // rounds of Newton's method
-constexpr Real kLinearShare = 0.25;   // share of the density tolerance for the solve of one round
-constexpr Real kMaxExpansion = 0.05;  // per round; linear theory is inaccurate beyond it
-constexpr Real kAlone = 1;            // the diagonal of a particle without neighbours
-
-/// The velocity of the walls of the vat over the step.
-Vec3 wall_velocity(const Model& model, Real time, Real dt) {
-  if (!model.scene.vat) return Vec3::Zero();
-  const Vat& vat = *model.scene.vat;
-  return (vat_motion(vat, time + dt).offset - vat_motion(vat, time).offset) / dt;
-}
-
-/// The mean residual at which the solve of the velocities ends. A divergence far above the density
-/// tolerance would cost more iterations for positions than it saves for velocities.
-Real mean_divergence(const IncompressibleSolve& wanted) {
-  const Real bound = std::clamp(kDivergenceOfDensity * wanted.density_tolerance, kStartDivergence,
-                                kMaxMeanDivergence);
-  return std::min(wanted.divergence_tolerance, bound);
-}
+constexpr Real kAlone = 1;  // the diagonal of a particle without neighbours
 
 /// Solves over the slots of the liquid, for pressures times dt^2.
 class VolumeSolve {
@@ -85,7 +55,7 @@ class VolumeSolve {
   }
   void set_up();
   /// The total accelerations of the response are then those of the change of x.
-  SolveReport solve(SolveLimits limits);
+  SolveReport solve(const SolveLimits& limits);
 
   const ForceModel& f_;
   Configuration& now_;
@@ -117,22 +87,18 @@ SolveReport VolumeSolve::project_velocities(const Vec3& wall_velocity) {
   response_.see_velocities(wall_velocity);
   VAT_CHECK(now_.pressure.size() == order_.size());
   response_.compress(problem_.excess);
-  const Real removal = std::min(wanted.density_tolerance, kMaxRemoval);
+  const DensityRoom bounds = density_room(wanted);
   each_slot([&](std::size_t s) {
     const Real density = s_.relative_density[s];
-    const Real excess = density - 1 - kLeftAlone * wanted.density_tolerance;
+    const Real excess = density - 1 - bounds.left_alone;
     const Real room =
-        density < 1 ? kClosing * (1 - density) : -std::clamp(excess, Real{0}, removal);
+        density < 1 ? bounds.closing * (1 - density) : -std::clamp(excess, Real{0}, bounds.removal);
     problem_.excess[s] = problem_.scale[s] * (dt_ * problem_.excess[s] - room);
     const bool is_alone = problem_.diagonal[s] == kAlone;
     problem_.x[s] = is_alone ? 0 : now_.pressure[order_[s]] / (density * density);
     if (is_alone) problem_.excess[s] = std::min(problem_.excess[s], Real{0});
   });
-  const Real tolerance = mean_divergence(wanted);
-  const SolveReport report =
-      solve({.mean = tolerance,
-             .greatest = std::min(kGreatestDivergence * tolerance, kMaxGreatestDivergence),
-             .start = std::min(tolerance, kStartDivergence)});
+  const SolveReport report = solve(velocity_limits(wanted));
   if (report.iterations == 0) return report;
   each_slot([&](std::size_t s) {
     now_.pressure[order_[s]] = problem_.x[s] * s_.relative_density[s] * s_.relative_density[s];
@@ -146,16 +112,12 @@ int VolumeSolve::shift_places(bool mean_is_met) {
     problem_.excess[s] = problem_.scale[s] * std::min(s_.relative_density[s] - 1, kMaxExpansion);
     problem_.x[s] = 0;
   });
-  const IncompressibleSolve& wanted = f_.model.scene.incompressible;
-  const Real tolerance = kLinearShare * wanted.density_tolerance;
-  const SolveReport report = solve({.mean = mean_is_met ? wanted.density_tolerance : tolerance,
-                                    .greatest = kGreatestOverMean * tolerance});
+  const SolveReport report = solve(place_limits(f_.model.scene.incompressible, mean_is_met));
   if (report.iterations > 0) response_.shift(dt_ * dt_);
   return report.iterations;
 }
 
-SolveReport VolumeSolve::solve(SolveLimits limits) {
-  limits.most_iterations = f_.model.scene.incompressible.most_iterations;
+SolveReport VolumeSolve::solve(const SolveLimits& limits) {
   return problem_.solve(limits, f_.runner, *this);
 }
 
@@ -189,7 +151,7 @@ void recall_pressure(StepContext& c) {
 
 void project_velocities(const ForceModel& f, State& state, Real time, Real dt) {
   VolumeSolve solve(f, state.now, dt, true);
-  state.volume.velocities = solve.project_velocities(wall_velocity(f.model, time, dt));
+  state.volume.velocities = solve.project_velocities(mean_wall_velocity(f.model, time, dt));
 }
 
 void correct_density(const ForceModel& f, State& state, Real time) {
@@ -197,7 +159,7 @@ void correct_density(const ForceModel& f, State& state, Real time) {
   Configuration& now = state.now;
   Forces unused;
   StepContext c{f.model, f.controls, time, f.step, now, unused, f.work, f.runner};
-  const Real tolerance = f.model.scene.incompressible.density_tolerance;
+  const IncompressibleSolve& wanted = f.model.scene.incompressible;
   if (!f.model.rigid_bodies.empty()) pose_rigid_bodies(c);
   SolveReport& report = state.volume.places;
   report = {};
@@ -205,10 +167,10 @@ void correct_density(const ForceModel& f, State& state, Real time) {
     hold_liquid_inside(f, time, now);
     find_density(c);
     measure_excess(c, report);
-    const bool mean_is_met = report.mean <= tolerance;
-    const bool is_solved = mean_is_met && report.greatest <= kGreatestOverMean * tolerance;
-    if (is_solved || round == kMaxCorrections || f.work.of<LiquidScratch>().too_many_pairs) return;
+    const bool is_last = is_solved(wanted, report) || round == kMaxCorrections;
+    if (is_last || f.work.of<LiquidScratch>().too_many_pairs) return;
     constexpr Real kUnit = 1;  // shifts take no time
+    const bool mean_is_met = report.mean <= wanted.density_tolerance;
     report.iterations += VolumeSolve(f, now, kUnit, false).shift_places(mean_is_met);
   }
 }

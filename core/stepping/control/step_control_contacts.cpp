@@ -1,4 +1,4 @@
-#include "core/stepping/step_control_contacts.h"
+#include "core/stepping/control/step_control_contacts.h"
 #include "core/contact/scratch.h"
 
 #include <algorithm>

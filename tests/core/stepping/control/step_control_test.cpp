@@ -1,4 +1,4 @@
-#include "core/stepping/step_control.h"
+#include "core/stepping/control/step_control.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/stepping/step_control.h"
+#include "core/stepping/control/step_control.h"
 #include "core/contact/scratch.h"
 #include "core/state/controls.h"
 
@@ -15,16 +15,14 @@
 #include "core/numerics/step_limits.h"
 #include "core/rigid/rigid.h"
 #include "core/state/rigid_motion.h"
+#include "core/stepping/control/step_control_liquid.h"
 #include "core/support/check.h"
 
 namespace vat {
 namespace {
 
 constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
-constexpr Real kTravelShare = 0.5;  // of the guard's travel: two bodies may approach each other
-constexpr Real kLiquidTravelShare = 0.25;  // of the support radius, for each of two particles
-constexpr Real kIncompressibleTravelShare = 0.2;  // densities change by one percent in a step
-constexpr Real kGreatestTurn = 0.5;               // [rad] in one step; the guard allows 1
+constexpr Real kGreatestTurn = 0.5;  // [rad] in one step; the guard allows 1
 
 /// 2 lambda_max(sum_j k_ij n n^T) / m_i at the start, for one of the constants of the springs.
 template <class Constant>
@@ -43,20 +41,9 @@ Real spring_load(const Model& model, const ModelBody& body, Index i, Constant&& 
   return 2 * solver.eigenvalues()[2] * model.inverse_mass[i];
 }
 
-/// The oscillation with the sound of a compressed liquid.
-Oscillation compressed(const Model& model, const Oscillation& liquid) {
-  if (model.is_coupled) return liquid;  // its bound includes the compression
-  const Real share = compressed_step_share(model.scene.dimensions);
-  return {liquid.omega2 / (share * share), liquid.rate};
-}
-
 /// The part of the own bounds of bodies that limits steps; see OscillatingPart::limiting().
 Oscillation limiting(const Model& model, const Oscillation& own) {
   return {own.omega2, solves_damping(model.scene) ? 0 : own.rate};
-}
-
-Real travel_share(const Model& model) {
-  return model.is_incompressible ? kIncompressibleTravelShare : kLiquidTravelShare;
 }
 
 /// Sets the bounds of a body's particles, which are equal.
@@ -152,11 +139,6 @@ StepBounds step_bounds_of_moved(const Model& model, std::size_t body, StepBounds
 
 namespace {
 
-/// The time in which a particle with `speed` and `acceleration` travels the distance `way`.
-Real travel_time(Real way, Real speed, Real acceleration) {
-  return 2 * way / (speed + std::sqrt(speed * speed + 4 * acceleration * way));
-}
-
 /// The bounds that the present state implies.
 struct PresentBounds {
   const Model& model;
@@ -208,29 +190,14 @@ Vec3 mean_liquid_velocity(const Model& model, const Configuration& now) {
   return model.liquid_count > 0 ? Vec3(sum / model.liquid_count) : sum;
 }
 
-/// The pressure that one in kRare particles of a liquid exceed. Higher ones are impacts, which are
-/// too short to disturb the lattice.
+/// The pressure that few particles of a liquid exceed; see lasting_rank().
 Real lasting_pressure(const std::vector<Real>& pressure, const IndexRange& particles,
                       std::vector<Real>& scratch) {
-  constexpr Index kRare = 100;
   if (particles.size() == 0) return 0;
   scratch.assign(pressure.begin() + particles.begin, pressure.begin() + particles.end);
-  const auto place = scratch.begin() + (particles.size() - 1 - (particles.size() - 1) / kRare);
+  const auto place = scratch.begin() + static_cast<std::ptrdiff_t>(lasting_rank(particles.size()));
   std::ranges::nth_element(scratch, place);
   return *place;
-}
-
-/// The bound of a body's own forces: sound and viscosity; or pressure, if viscosity is solved.
-Oscillation liquid_bound(const PresentBounds& present, std::size_t body,
-                         std::vector<Real>& scratch) {
-  const Model& model = present.model;
-  if (!model.is_incompressible) return compressed(model, model.damping.own[body]);
-  const ModelBody& liquid = model.bodies[body];
-  const Real pressure = lasting_pressure(present.state.now.pressure, liquid.particles, scratch);
-  const LiquidModel& constants = *model.liquids[liquid.material];
-  const Real rate = solves_damping(model.scene) ? 0 : model.damping.own[body].rate;
-  return {pressed_lattice_omega2(pressure / constants.rest_density, constants.support_radius),
-          rate};
 }
 
 /// An acceleration of coupled liquids if the forces are not known.
@@ -247,16 +214,17 @@ Real liquid_step(const PresentBounds& present, std::vector<Real>& scratch) {
     const ModelBody& body = present.model.bodies[b];
     if (body.kind != BodyKind::liquid) continue;
     Real speed2 = 0;
-    Real acceleration = unknown_acceleration(present);
+    LiquidMotion motion;
+    motion.acceleration = unknown_acceleration(present);
     for (Index i = body.particles.begin; i < body.particles.end; ++i) {
       speed2 = std::max(speed2, (present.state.now.velocity[i] - mean).squaredNorm());
-      acceleration = std::max(acceleration, present.acceleration(i));
+      motion.acceleration = std::max(motion.acceleration, present.acceleration(i));
     }
-    const Real way =
-        travel_share(present.model) * present.model.liquids[body.material]->support_radius;
-    step =
-        std::min({step, safe_step(present.model.scene.numerics, liquid_bound(present, b, scratch)),
-                  travel_time(way, std::sqrt(speed2), acceleration)});
+    motion.speed = std::sqrt(speed2);
+    if (present.model.is_incompressible) {
+      motion.pressure = lasting_pressure(present.state.now.pressure, body.particles, scratch);
+    }
+    step = std::min(step, step_of_liquid(present.model, b, motion));
   }
   return step;
 }
@@ -356,6 +324,14 @@ Real without_viscosity_solve(const Model& model, Real step) {
   }
   constexpr Real kRounding = 1e-9;
   return longest > step / 2 ? (1 - kRounding) * longest : step;
+}
+
+Real limit_by_rate(const Model& model, Real step, Real observed_rate) {
+  const Numerics& numerics = model.scene.numerics;
+  if (observed_rate > 0) {
+    step = std::min(step, resolving_phase_of_places(numerics) / observed_rate);
+  }
+  return without_viscosity_solve(model, std::min(step, numerics.step));
 }
 
 std::uint32_t level_of(Real step, Real nominal) {

@@ -5,7 +5,7 @@
 #include "core/evaluation/force_model.h"
 #include "core/guard/guard.h"
 #include "core/numerics/stable_step.h"
-#include "core/stepping/step_control_contacts.h"
+#include "core/stepping/control/step_control_contacts.h"
 
 /// Functions that compute the step lengths that a state allows, and divide nominal steps into
 /// parts.
@@ -63,6 +63,12 @@ Real greatest_base_step(const ForceModel& force_model, const State& state, const
 /// between half of `step` and `step`. Otherwise returns `step`. A viscosity solve costs about as
 /// much as the rest of a step.
 Real without_viscosity_solve(const Model& model, Real step);
+
+/// Returns the longest step that resolves motion of `observed_rate` [rad/s], up to `step` and to
+/// the nominal step, and after without_viscosity_solve().
+Real limit_by_rate(const Model& model, Real step, Real observed_rate);
+/// The first step is chosen after a probe of this share of the allowed step.
+inline constexpr Real kProbeShare = 0.1;
 
 /// Returns the lowest level l with nominal / 2^l <= step, at most kMaxStepLevel.
 std::uint32_t level_of(Real step, Real nominal);

@@ -1,0 +1,59 @@
+#include "core/liquid/incompressible/solve_limits.h"
+
+#include <algorithm>
+
+#include "core/laws/vat_motion.h"
+
+namespace vat {
+namespace {
+
+constexpr Real kGreatestOverMean = 36;  // ratio of maximum and mean, for densities
+// Ratio of maximum and mean for changes of density, which the correction of positions removes.
+constexpr Real kGreatestDivergence = 200;
+// Bounds of loose tolerances. They keep the kinetic energy small that a step adds by removing
+// excess density, and start each solve from pressures that are close to its own.
+constexpr Real kMaxGreatestDivergence = 0.2;  // residual of one particle
+constexpr Real kMaxMeanDivergence = 0.003;    // mean residual
+constexpr Real kStartDivergence = 0.001;      // mean residual above which pressures are updated
+constexpr Real kDivergenceOfDensity = 0.25;   // mean divergence / density tolerance
+constexpr Real kMaxRemoval = 0.0015;          // relative excess density that one step removes
+constexpr Real kLeftAlone = 0.2;     // share of the density tolerance that the velocities leave
+constexpr Real kClosing = 0.5;       // share of a gap that is closed in one step
+constexpr Real kLinearShare = 0.25;  // share of the density tolerance for the solve of one round
+
+}  // namespace
+
+DensityRoom density_room(const IncompressibleSolve& wanted) {
+  return {kClosing, kLeftAlone * wanted.density_tolerance,
+          std::min(wanted.density_tolerance, kMaxRemoval)};
+}
+
+SolveLimits velocity_limits(const IncompressibleSolve& wanted) {
+  const Real bound = std::clamp(kDivergenceOfDensity * wanted.density_tolerance, kStartDivergence,
+                                kMaxMeanDivergence);
+  const Real tolerance = std::min(wanted.divergence_tolerance, bound);
+  return {.mean = tolerance,
+          .greatest = std::min(kGreatestDivergence * tolerance, kMaxGreatestDivergence),
+          .most_iterations = wanted.most_iterations,
+          .start = std::min(tolerance, kStartDivergence)};
+}
+
+SolveLimits place_limits(const IncompressibleSolve& wanted, bool mean_is_met) {
+  const Real tolerance = kLinearShare * wanted.density_tolerance;
+  return {.mean = mean_is_met ? wanted.density_tolerance : tolerance,
+          .greatest = kGreatestOverMean * tolerance,
+          .most_iterations = wanted.most_iterations};
+}
+
+bool is_solved(const IncompressibleSolve& wanted, const SolveReport& places) {
+  return places.mean <= wanted.density_tolerance &&
+         places.greatest <= kGreatestOverMean * wanted.density_tolerance;
+}
+
+Vec3 mean_wall_velocity(const Model& model, Real time, Real dt) {
+  if (!model.scene.vat) return Vec3::Zero();
+  const Vat& vat = *model.scene.vat;
+  return (vat_motion(vat, time + dt).offset - vat_motion(vat, time).offset) / dt;
+}
+
+}  // namespace vat
