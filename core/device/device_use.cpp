@@ -2,8 +2,8 @@
 
 #include <utility>
 
+#include "core/device/device_engine.h"
 #include "core/device/opencl/devices.h"
-#include "core/device/tait/tait_engine.h"
 #include "core/support/check.h"
 
 namespace vat {
@@ -41,7 +41,7 @@ Result<std::unique_ptr<StepEngine>> make_engine(const DeviceChoice& choice) {
   if (choice.is_cpu) return std::unique_ptr<StepEngine>();
   const Result<opencl::Device> device = opencl::find_device(choice.index);
   if (!device) return device.errors();
-  return make_tait_engine(device.value(), choice.arithmetic);
+  return make_device_engine(device.value(), choice.arithmetic);
 }
 
 DeviceChoice device_for(const std::optional<DeviceChoice>& setting, const Scene& scene) {

@@ -13,7 +13,7 @@ namespace vat {
 Status check_device(const DeviceChoice& choice);
 
 /// Returns the engine of the device, or null for the CPU. The choice must not be automatic. Fails
-/// like opencl::find_device() and make_tait_engine().
+/// like opencl::find_device() and make_device_engine().
 Result<std::unique_ptr<StepEngine>> make_engine(const DeviceChoice& choice);
 
 /// Returns the device for a scene: the setting if present, otherwise the device that the scene

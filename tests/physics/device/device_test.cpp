@@ -1,13 +1,12 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <functional>
 
-#include "core/device/device_use.h"
 #include "protocol/scene/scene_json.h"
+#include "tests/physics/device/on_device.h"
 #include "tests/support/scenes.h"
 
-// Weakly compressible liquids on an OpenCL device. The test machine computes them by PoCL.
+// Weakly compressible liquids on an OpenCL device.
 
 namespace vat::device_test {
 namespace {
@@ -29,46 +28,17 @@ Scene make_column() {
   return scene;
 }
 
-std::unique_ptr<StepEngine> make_device(const char* text = "opencl") {
-  Result<std::unique_ptr<StepEngine>> engine = make_engine(parse_device(text).value());
-  if (!engine) throw std::runtime_error(engine.errors().front().message);
-  return std::move(engine).value();
-}
-
-Simulation make_on_device(const Scene& scene) {
-  Simulation simulation = make_simulation(scene);
-  if (const Status set = simulation.set_engine(make_device()); !set) {
-    throw std::runtime_error(set.errors().front().path);
-  }
-  return simulation;
-}
-
-struct SceneCase {
-  const char* name;
-  std::function<void(Scene&)> edit;
-};
-
 const SceneCase kScenes[] = {
-    {"column", [](Scene&) {}},
-    {"in a corner with a lid",
+    {"no-slip walls that move",
      [](Scene& scene) {
-       scene.vat->lid = true;
-       scene.vat->max = {0.3, 0.12, 0.25};
+       scene.vat->motion = SlideMotion{Vec3(0, 1, 0), 0.02, 3};
+       set_no_slip(scene);
      }},
-    {"sliding vat",
+    {"honey between slip walls",
      [](Scene& scene) {
-       scene.vat->motion = SlideMotion{Vec3(1, 0, 0.5).normalized(), 0.1, 0.2};
-     }},
-    {"two dimensions",
-     [](Scene& scene) {
-       scene.dimensions = 2;
-       std::get<BoxShape>(scene.bodies[0].shape).center.y() = 0;
-       scene.vat->min.y() = -1;
-       scene.vat->max.y() = 1;
-     }},
-    {"settling",
-     [](Scene& scene) {
-       scene.settling = Settling{20, 0.015};
+       scene.materials[0].liquid->viscosity = 0.3;
+       scene.materials[0].liquid->artificial_viscosity = 0;
+       scene.numerics.step = scene.numerics.tick = 5e-4;
      }},
     {"without a vat", [](Scene& scene) { scene.vat.reset(); }},
     {"without gravity",
@@ -76,50 +46,14 @@ const SceneCase kScenes[] = {
        scene.forces.gravity = false;
        scene.bodies[0].velocity = {0.5, 0, 0.2};
      }},
-    {"two bodies",
-     [](Scene& scene) {
-       scene.bodies.push_back(scene.bodies[0]);
-       scene.bodies[1].name = "drop";
-       scene.bodies[1].shape = SphereShape{{0.22, 0.06, 0.2}, 0.04};
-       scene.bodies[1].velocity = {-1, 0, -2};
-     }},
 };
-
-/// The greatest difference of positions after the same time [m].
-Real difference(const Simulation& a, const Simulation& b) {
-  Real greatest = 0;
-  for (std::size_t body = 0; body < a.bodies().size(); ++body) {
-    const BodyView one = a.bodies()[body];
-    const BodyView other = b.bodies()[body];
-    for (std::size_t i = 0; i < one.positions.size(); ++i) {
-      greatest = std::max(greatest, (one.positions[i] - other.positions[i]).norm());
-    }
-  }
-  return greatest;
-}
 
 // Both compute sums over pairs in single precision. Differences from double precision are therefore
 // of equal size, up to the order of sums.
 TEST(Device, HasTheAccuracyOfTheCpu) {
   constexpr std::uint32_t kSteps = 30;
-  for (const SceneCase& one : kScenes) {
-    SCOPED_TRACE(one.name);
-    Scene scene = make_column();
-    one.edit(scene);
-    Simulation device = make_on_device(scene);
-    Simulation single = make_simulation(scene);
-    scene.pair_precision = PairPrecision::double_precision;
-    Simulation exact = make_simulation(scene);
-    const AdvanceReport report = device.advance(kSteps);
-    const AdvanceReport expected = single.advance(kSteps);
-    exact.advance(kSteps);
-    EXPECT_EQ(report.device_steps, kSteps);
-    EXPECT_EQ(report.steps, expected.steps);
-    EXPECT_EQ(report.force_evaluations, expected.force_evaluations);
-    EXPECT_EQ(report.wall_stops, expected.wall_stops);
-    EXPECT_LT(difference(device, exact), 3 * difference(single, exact));
-    EXPECT_GT(difference(device, make_simulation(scene)), 1e-4) << "it moves";
-  }
+  expect_accuracy_of_cpu(make_column(), kCommonScenes, kSteps);
+  expect_accuracy_of_cpu(make_column(), kScenes, kSteps);
 }
 
 TEST(Device, ReflectsParticlesAtWalls) {
@@ -236,24 +170,12 @@ TEST(Device, LeavesAFailedStepToTheCpu) {
     SCOPED_TRACE(one.name);
     Scene scene = make_column();
     one.edit(scene);
-    Simulation device = make_on_device(scene);
-    Simulation cpu = make_simulation(scene);
-    const AdvanceReport report = device.advance(one.steps);
-    const AdvanceReport expected = cpu.advance(one.steps);
-    EXPECT_EQ(report.device_steps, 0U);
-    EXPECT_GT(report.undone_steps, 0U);
-    EXPECT_EQ(report.undone_steps, expected.undone_steps);
-    EXPECT_EQ(report.steps, expected.steps);
-    EXPECT_EQ(device.state_hash(), cpu.state_hash());
+    expect_steps_of_cpu(scene, one.steps);
   }
 }
 
 TEST(Device, RefusesFeaturesThatItLacks) {
-  struct Case {
-    const char* path;
-    std::function<void(Scene&)> edit;
-  };
-  const Case cases[] = {
+  const SceneCase cases[] = {
       {"/pressure_solver", [](Scene& s) { s.pressure_solver = PressureSolver::gas; }},
       {"/bodies/1/kind",
        [](Scene& s) {
@@ -290,7 +212,6 @@ TEST(Device, RefusesFeaturesThatItLacks) {
          s.materials[0].liquid->surface_tension = 0.07;
          s.materials[0].liquid->support_radius = 2.5 * kSpacing;
        }},
-      {"/vat/walls", [](Scene& s) { s.vat->walls[4].no_slip = true; }},
       {"/emitters",
        [](Scene& s) {
          s.emitters.push_back({.name = "tap",
@@ -305,18 +226,7 @@ TEST(Device, RefusesFeaturesThatItLacks) {
          s.drains.push_back({"hole", {0, 0, 0}, {0.1, 0.1, 0.1}});
        }},
   };
-  for (const Case& one : cases) {
-    SCOPED_TRACE(one.path);
-    Scene scene = make_column();
-    one.edit(scene);
-    Simulation simulation = make_simulation(scene);
-    const Status set = simulation.set_engine(make_device());
-    ASSERT_FALSE(set.ok());
-    EXPECT_EQ(set.errors().front().code, "not_on_device");
-    EXPECT_TRUE(std::ranges::any_of(set.errors(), [&](const Error& error) {
-      return error.path == one.path;
-    })) << set.errors().front().path;
-  }
+  expect_refusals(make_column(), cases);
 }
 
 TEST(Device, IsRefusedIfItDoesNotExist) {

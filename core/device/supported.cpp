@@ -1,9 +1,8 @@
-#include "core/device/tait/supported.h"
+#include "core/device/supported.h"
 
 #include <algorithm>
 
 #include "core/damping/damping_solve.h"
-#include "core/model/acting_forces.h"
 
 namespace vat {
 
@@ -13,8 +12,9 @@ Errors find_features_not_on_device(const Model& model) {
   const auto reject = [&](bool is_used, const std::string& path, const std::string& message) {
     if (is_used) errors.push_back({"not_on_device", path, message});
   };
-  reject(scene.pressure_solver != PressureSolver::tait, "/pressure_solver",
-         "must be tait on a device");
+  const bool is_incompressible = scene.pressure_solver == PressureSolver::incompressible;
+  reject(scene.pressure_solver == PressureSolver::gas, "/pressure_solver",
+         "must be tait or incompressible on a device");
   reject(scene.bodies.empty(), "/bodies", "must contain a liquid on a device");
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
     const std::string path = "/bodies/" + std::to_string(b);
@@ -31,17 +31,20 @@ Errors find_features_not_on_device(const Model& model) {
   reject(scene.kernel != KernelId::wendland_c2, "/kernel", "must be wendland_c2 on a device");
   reject(scene.pair_precision != PairPrecision::single_precision, "/pair_precision",
          "must be single on a device");
-  reject(scene.numerics.integrator != IntegratorId::velocity_verlet, "/numerics/integrator",
-         "must be velocity_verlet on a device");
-  reject(scene.numerics.control != StepControl::fixed, "/numerics/control",
+  // An incompressible liquid requires symplectic Euler.
+  reject(!is_incompressible && scene.numerics.integrator != IntegratorId::velocity_verlet,
+         "/numerics/integrator", "must be velocity_verlet on a device");
+  reject(is_incompressible && !scene.forces.pressure, "/forces/pressure",
+         "must be true for an incompressible liquid on a device");
+  const StepControl control = scene.numerics.control;
+  reject(!is_incompressible && control != StepControl::fixed, "/numerics/control",
          "must be fixed on a device");
+  reject(is_incompressible && control == StepControl::local, "/numerics/control",
+         "must be fixed or adaptive on a device");
   reject(must_solve_viscosity(model, scene.numerics.step), "/numerics/step",
          "must resolve the viscosity of the liquid on a device");
   reject(model.has_surface_tension || model.cohesion.has_value(), "/materials",
          "must have no surface tension on a device");
-  reject(has_viscous_images(model), "/vat/walls",
-         "must be slip walls, and the liquid must have more artificial than physical viscosity on "
-         "a device");
   reject(model.is_filled, "/vat/lid", "must be false for a vat full of liquid on a device");
   return errors;
 }

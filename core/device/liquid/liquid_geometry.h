@@ -7,8 +7,9 @@
 
 namespace vat {
 
-/// The struct Parameters of core/device/tait/step.cl, with the same members in the same order.
-struct TaitParameters {
+/// The struct Parameters of core/device/liquid/particles.cl, with the same members in the same
+/// order.
+struct LiquidParameters {
   double origin[3];     ///< of integer positions and of cells, moves with the vat [m]
   double inverse_unit;  ///< of integer positions [1/m]
   double wall_low[3];   ///< infinite without a wall [m]
@@ -32,6 +33,7 @@ struct TaitParameters {
   float stiffness;            ///< density times square of the speed of sound [Pa]
   float slope_factor;         ///< acceleration / sum of pressures and gradients
   float viscosity;            ///< central viscosity / support radius
+  float speeds_of_walls[18];  ///< velocity of the surface of each wall [m/s]
   std::int32_t twice_low[3];  ///< 2 wall_low in integer positions
   std::int32_t twice_high[3];
   std::int32_t cells[3];
@@ -39,11 +41,14 @@ struct TaitParameters {
   std::int32_t reach;      ///< cells that a support radius extends into beside the own one
   std::int32_t support;    ///< support radius in integer positions
   std::int32_t walls;      ///< bit w: wall w exists
+  std::int32_t no_slip;    ///< bit w: liquid does not slip along wall w
+  std::int32_t is_thick;   ///< 1: slip walls are viscous, see is_thick()
+  std::int32_t bounces;    ///< 1: walls reverse velocities; 0: walls remove them
   std::int32_t count;      ///< particles
 };
 
 /// A moment of a step: the durations of its kicks and of its drift, and the time after the drift.
-struct TaitMoment {
+struct StepMoment {
   Real time = 0;  ///< [s]
   Real closing = 0;
   Real opening = 0;
@@ -51,18 +56,21 @@ struct TaitMoment {
   Real prediction = 0;
 };
 
-/// Computes the parameters of a model.
-class TaitGeometry {
+/// Computes the parameters of kernels for a model with one liquid.
+class LiquidGeometry {
  public:
-  TaitGeometry(const Model& model, const GuardBounds& bounds);
+  LiquidGeometry(const Model& model, const GuardBounds& bounds);
 
-  TaitParameters at(const Model& model, const TaitMoment& moment) const;
+  LiquidParameters at(const Model& model, const StepMoment& moment) const;
   std::size_t cell_count() const;
+  /// Returns the square of the greatest valid speed in a step of `dt` [s], see GuardBounds::travel.
+  Real greatest_speed2(Real dt) const;
 
  private:
   void set_grid(const Model& model);
 
-  TaitParameters constant_{};
+  LiquidParameters constant_{};
+  Real travel_ = 0;             ///< [m]
   Vec3 origin_ = Vec3::Zero();  ///< without the displacement of the vat [m]
 };
 

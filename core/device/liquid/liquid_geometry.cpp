@@ -1,4 +1,4 @@
-#include "core/device/tait/parameters.h"
+#include "core/device/liquid/liquid_geometry.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +7,7 @@
 #include "core/laws/vat_motion.h"
 #include "core/limits.h"
 #include "core/liquid/pairs/coupled_pairs.h"
+#include "core/model/acting_forces.h"
 #include "core/model/compile.h"
 #include "core/support/check.h"
 
@@ -16,7 +17,7 @@ namespace {
 constexpr int kMaxBits = 23;  ///< exact in single precision
 constexpr int kMinBits = 19;
 constexpr Real kMostCells = 4096;
-constexpr Real kPlaces = 1 << 29;  ///< limit of integer positions in step.cl
+constexpr Real kPlaces = 1 << 29;  ///< limit of integer positions in particles.cl
 
 void store(const Vec3& from, double (&to)[3]) {
   for (int k = 0; k < 3; ++k) to[k] = from[k];
@@ -54,7 +55,7 @@ Real plane_of(const Vat& vat, const VatMotion& motion, int wall) {
 
 }  // namespace
 
-void TaitGeometry::set_grid(const Model& model) {
+void LiquidGeometry::set_grid(const Model& model) {
   const auto [low, high] = box_of(model);
   const Real support = model.liquids[model.material[0]]->support_radius;
   const Real extent = (high - low).maxCoeff() / support;
@@ -86,26 +87,28 @@ void TaitGeometry::set_grid(const Model& model) {
   constant_.in_supports = std::ldexp(1.0F, -bits);
 }
 
-TaitGeometry::TaitGeometry(const Model& model, const GuardBounds& bounds) {
+LiquidGeometry::LiquidGeometry(const Model& model, const GuardBounds& bounds) {
   VAT_CHECK(model.liquid_count == model.particle_count && model.liquid_count > 0);
   set_grid(model);
   const LiquidModel& liquid = *model.liquids[model.material[0]];
   store(bounds.min, constant_.domain_low);
   store(bounds.max, constant_.domain_high);
-  const Real travel = *std::ranges::min_element(bounds.travel);
-  const Real speed = std::min(kMaxSpeed, travel / model.scene.numerics.step);
-  constant_.greatest_speed2 = speed * speed;
+  travel_ = *std::ranges::min_element(bounds.travel);
+  constant_.greatest_speed2 = greatest_speed2(model.scene.numerics.step);
   constant_.density = static_cast<float>(liquid.rest_density);
   constant_.stiffness = static_cast<float>(liquid.rest_density * liquid.stiffness);
   // The acceleration is force / mass, and mass / rest volume is the density.
   constant_.slope_factor = static_cast<float>(slope_factor(model, liquid) / liquid.rest_density);
   constant_.viscosity = static_cast<float>(liquid.central_viscosity / liquid.support_radius);
   for (const int wall : model.walls) constant_.walls |= 1 << wall;
+  for (const int wall : model.no_slip_walls) constant_.no_slip |= 1 << wall;
+  constant_.is_thick = is_thick(liquid, model.scene.dimensions) ? 1 : 0;
+  constant_.bounces = model.is_incompressible ? 0 : 1;
   constant_.count = static_cast<std::int32_t>(model.particle_count);
 }
 
-TaitParameters TaitGeometry::at(const Model& model, const TaitMoment& moment) const {
-  TaitParameters p = constant_;
+LiquidParameters LiquidGeometry::at(const Model& model, const StepMoment& moment) const {
+  LiquidParameters p = constant_;
   const Scene& scene = model.scene;
   const VatMotion motion = scene.vat ? vat_motion(*scene.vat, moment.time) : VatMotion{};
   const Vec3 origin = origin_ + motion.offset;
@@ -132,6 +135,9 @@ TaitParameters TaitGeometry::at(const Model& model, const TaitMoment& moment) co
         static_cast<std::int32_t>(std::llround(2 * (plane - origin[axis]) * p.inverse_unit));
     (wall % 2 == 0 ? p.wall_low : p.wall_high)[axis] = plane;
     (wall % 2 == 0 ? p.twice_low : p.twice_high)[axis] = twice;
+    const auto index = static_cast<std::size_t>(wall);
+    const Vec3 velocity = motion.velocity + scene.vat->walls[index].velocity;
+    for (int k = 0; k < 3; ++k) p.speeds_of_walls[3 * wall + k] = static_cast<float>(velocity[k]);
   }
   p.closing = moment.closing;
   p.opening = moment.opening;
@@ -140,7 +146,12 @@ TaitParameters TaitGeometry::at(const Model& model, const TaitMoment& moment) co
   return p;
 }
 
-std::size_t TaitGeometry::cell_count() const {
+Real LiquidGeometry::greatest_speed2(Real dt) const {
+  const Real speed = std::min(kMaxSpeed, travel_ / dt);
+  return speed * speed;
+}
+
+std::size_t LiquidGeometry::cell_count() const {
   std::size_t count = 1;
   for (const std::int32_t along : constant_.cells) count *= static_cast<std::size_t>(along);
   return count;

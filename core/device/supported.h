@@ -5,9 +5,10 @@
 
 namespace vat {
 
-/// Returns an error for each feature of the model that TaitEngine lacks, with the code
+/// Returns an error for each feature of the model that the device lacks, with the code
 /// "not_on_device" and the path of the feature in the scene. The device computes bodies of one
-/// liquid in a vat with slip walls, by the solver `tait` and fixed steps of velocity Verlet.
+/// liquid in a vat, with the solver `tait` by fixed steps of velocity Verlet, or with the solver
+/// `incompressible` by fixed or adaptive steps of symplectic Euler.
 Errors find_features_not_on_device(const Model& model);
 
 }  // namespace vat

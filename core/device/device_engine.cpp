@@ -1,0 +1,96 @@
+#include "core/device/device_engine.h"
+
+#include <string>
+
+#include "core/device/incompressible/incompressible_method.h"
+#include "core/device/kernel_source.h"
+#include "core/device/opencl/program.h"
+#include "core/device/supported.h"
+#include "core/device/tait/tait_method.h"
+#include "core/support/check.h"
+
+namespace vat {
+namespace {
+
+using opencl::DeviceFailure;
+using opencl::Program;
+
+Error failed(const std::string& message) {
+  return {"device_failed", "/device", message};
+}
+
+class DeviceEngine : public StepEngine {
+ public:
+  DeviceEngine(std::unique_ptr<Program> program, DeviceArithmetic arithmetic)
+      : program_(std::move(program)), name_("opencl-" + std::string(to_string(arithmetic))) {}
+
+  std::string_view arithmetic() const override { return name_; }
+  Status bind(std::shared_ptr<const Model> model) override;
+  Result<bool> advance(const EngineInput& input, std::uint32_t steps) override;
+  Status read(State& state) override;
+
+ private:
+  std::unique_ptr<Program> program_;
+  std::string name_;
+  std::unique_ptr<DeviceMethod> method_;  ///< of the bound model
+};
+
+Status DeviceEngine::bind(std::shared_ptr<const Model> model) {
+  method_.reset();  // before the allocation of new buffers
+  Errors missing = find_features_not_on_device(*model);
+  if (!missing.empty()) return missing;
+  const LiquidGeometry geometry(*model, guard_bounds(*model));
+  const std::size_t bytes = model->is_incompressible ? bytes_for_incompressible(*model, geometry)
+                                                     : bytes_for_tait(*model, geometry);
+  const opencl::Device& device = program_->device();
+  if (bytes > device.memory) {
+    return failed("the scene needs " + std::to_string(bytes) + " bytes on the device; " +
+                  device.name + " has " + std::to_string(device.memory));
+  }
+  const auto make = model->is_incompressible ? &make_incompressible_method : &make_tait_method;
+  try {
+    method_ = make(*program_, std::move(model), geometry);
+  } catch (const DeviceFailure& failure) {
+    return failed(failure.what());
+  }
+  return {};
+}
+
+Result<bool> DeviceEngine::advance(const EngineInput& input, std::uint32_t steps) {
+  VAT_CHECK(method_ != nullptr && steps > 0);
+  if (!input.controls.grabs.empty() || !input.controls.applied_forces.empty()) return false;
+  try {
+    return method_->take_steps(input, steps);
+  } catch (const DeviceFailure& failure) {
+    return failed(failure.what());
+  }
+}
+
+Status DeviceEngine::read(State& state) {
+  VAT_CHECK(method_ != nullptr);
+  try {
+    method_->read(state);
+  } catch (const DeviceFailure& failure) {
+    return failed(failure.what());
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<StepEngine>> make_device_engine(const opencl::Device& device,
+                                                       DeviceArithmetic arithmetic) {
+  std::string options = "-cl-std=CL1.2";
+  if (arithmetic == DeviceArithmetic::exact) {
+    if (!device.is_exact) {
+      return Error{"not_available", "/device",
+                   device.name + " has no exact arithmetic; use the arithmetic fast"};
+    }
+    options += " -DVAT_EXACT -cl-fp32-correctly-rounded-divide-sqrt";
+  }
+  Result<std::unique_ptr<Program>> program = Program::create(device, kDeviceKernels, options);
+  if (!program) return program.errors();
+  return std::unique_ptr<StepEngine>(new DeviceEngine(std::move(program).value(), arithmetic));
+}
+
+}  // namespace vat

@@ -1,0 +1,100 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "core/device/liquid/device_particles.h"
+#include "core/device/liquid/liquid_geometry.h"
+#include "core/device/opencl/program.h"
+#include "core/diagnostics.h"
+#include "core/liquid/incompressible/complementarity.h"
+
+namespace vat {
+
+/// The struct Solve of core/device/incompressible/solve.cl, with the same members in the same
+/// order.
+struct SolveParameters {
+  double wall_velocity[3];     ///< mean over the step [m/s]
+  double gravity[3];           ///< [m/s^2]
+  double dt;                   ///< [s]; 1 in solves for positions
+  double volume;               ///< rest volume / weight [m^3]
+  double rate_factor;          ///< ds/dt / sum over pairs
+  double acceleration_factor;  ///< acceleration / sum over pairs
+  double diagonal_factor;      ///< diagonal / (dt^2 weight squares)
+  double mean;                 ///< limit of the mean residual
+  double greatest;             ///< limit of the greatest residual
+  double start;                ///< SolveLimits::start
+  double negligible;           ///< x counts as 0 if x diagonal / scale is at most this
+  double least_bound;          ///< see Complementarity
+  double greatest_bound;
+  double bound_of_optimal;
+  double closing;  ///< see DensityRoom
+  double left_alone;
+  double removal;
+  double max_expansion;  ///< kMaxExpansion
+  std::int32_t most_iterations;
+  std::int32_t count;  ///< particles
+};
+
+/// The struct Progress of solve.cl, with the same members in the same order.
+struct SolveProgress {
+  double mean;
+  double greatest;
+  double mean_excess;      ///< mean of max(0, s - 1) for the relative density s
+  double greatest_excess;  ///< maximum of the same quantity
+  double square;
+  double share;
+  double slope;
+  double length;
+  double longest_step;
+  std::int32_t iterations;
+  std::int32_t is_open;
+  std::int32_t restarts;
+  std::int32_t padding;
+};
+
+/// Returns the number of groups of work-items for `particles`, each of which has a partial sum.
+inline std::int32_t groups_of(std::size_t particles) {
+  constexpr std::size_t kGroup = opencl::Program::kGroup;
+  return static_cast<std::int32_t>((particles + kGroup - 1) / kGroup);
+}
+
+/// Returns the parameters that do not depend on the step, for a model with one liquid.
+SolveParameters solve_parameters(const Model& model);
+void set_limits(const SolveLimits& limits, SolveParameters& parameters);
+
+/// Solves a Complementarity on a device. The device decides when a solve ends, so that the number
+/// of iterations does not depend on the host. The functions throw opencl::DeviceFailure.
+class DeviceSolve {
+ public:
+  DeviceSolve(opencl::Program& program, std::size_t particles);
+  static std::size_t bytes_for(std::size_t particles);
+
+  /// Iterates from the unknowns and excesses that begin_projection or begin_shift has computed. The
+  /// sum `whole` of accelerations is then that of the change of x. `expected` is the expected
+  /// number of iterations.
+  SolveReport solve(const LiquidParameters& p, const SolveParameters& solve,
+                    const DeviceParticles& particles, int expected);
+  /// Computes and returns the excess density from the partial sums of find_density. The number of
+  /// iterations is 0.
+  SolveReport measure_excess();
+
+  // Buffers by slot, see solve.cl.
+  opencl::Buffer density, squares;
+  opencl::Buffer solve_motion, whole;
+  opencl::Buffer x, excess, gradient;
+  opencl::Buffer partial;
+  opencl::Buffer progress;
+
+ private:
+  void iterate(const LiquidParameters& p, const SolveParameters& solve,
+               const DeviceParticles& particles);
+  SolveProgress read_progress();
+
+  opencl::Program& program_;
+  const std::size_t count_;
+  const std::int32_t groups_;
+  opencl::Buffer direction_, product_, charge_;
+};
+
+}  // namespace vat

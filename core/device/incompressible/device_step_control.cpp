@@ -1,0 +1,118 @@
+#include "core/device/incompressible/device_step_control.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/device/incompressible/device_solve.h"
+#include "core/evaluation/motion_probe.h"
+#include "core/stepping/control/step_control.h"
+#include "core/stepping/control/step_control_liquid.h"
+
+namespace vat {
+namespace {
+
+using opencl::Buffer;
+using opencl::Program;
+
+constexpr std::size_t kMotionBytes = 32;  // the struct Motion of step_control.cl
+constexpr std::size_t kDigits = 256;
+constexpr int kDigitBits = 8;
+constexpr int kKeyBits = 32;
+
+std::int32_t first_of(const ModelBody& body) {
+  return static_cast<std::int32_t>(body.particles.begin);
+}
+std::int32_t count_of(const ModelBody& body) {
+  return static_cast<std::int32_t>(body.particles.size());
+}
+
+}  // namespace
+
+DeviceStepControl::DeviceStepControl(Program& program, const Model& model, const Buffer& partial)
+    : program_(program),
+      partial_(partial),
+      guard_(guard_bounds(model)),
+      bodies_(model.bodies.size()),
+      motion_(program, kMotionBytes),
+      results_(program, (bodies_ + 1) * sizeof(Double2)),
+      histogram_(program, kDigits * sizeof(std::int32_t)) {
+  const StepBounds bounds = find_step_bounds(model);
+  own_step_ = std::min(bounds.scene_step, std::ranges::min(bounds.own_step));
+}
+
+std::size_t DeviceStepControl::bytes_for(const Model& model) {
+  return kMotionBytes + (model.bodies.size() + 1) * sizeof(Double2) +
+         kDigits * sizeof(std::int32_t);
+}
+
+void DeviceStepControl::select_pressure(const ModelBody& body, std::int32_t result,
+                                        const Buffer& pressure) {
+  const std::size_t n = body.particles.size();
+  const auto rank = static_cast<std::int32_t>(lasting_rank(n));
+  program_.run("begin_selection", Program::kGroup, groups_of(n), rank, result, partial_, motion_,
+               results_, histogram_);
+  for (std::int32_t shift = kKeyBits - kDigitBits; shift >= 0; shift -= kDigitBits) {
+    program_.run("count_digits", n, first_of(body), count_of(body), shift, pressure, motion_,
+                 histogram_);
+    program_.run("select_digit", Program::kGroup, shift, result, histogram_, motion_, results_);
+  }
+}
+
+Real DeviceStepControl::least_step(const Model& model, const Buffer& velocity,
+                                   const Buffer& pressure) {
+  const std::size_t n = model.particle_count;
+  const auto count = static_cast<std::int32_t>(n);
+  const auto last = static_cast<std::int32_t>(bodies_);
+  program_.run("sum_velocities", n, count, velocity, partial_);
+  program_.run("find_mean", Program::kGroup, count, groups_of(n), last, partial_, motion_,
+               results_);
+  for (std::int32_t b = 0; b < last; ++b) {
+    const ModelBody& body = model.bodies[static_cast<std::size_t>(b)];
+    program_.run("find_relative_speeds", body.particles.size(), first_of(body), count_of(body),
+                 velocity, motion_, partial_);
+    select_pressure(body, b, pressure);
+  }
+  const std::vector<Double2> results = read_results();
+  Real step = step_of_particles(own_step_, guard_, std::sqrt(results.back().x));
+  for (std::size_t b = 0; b < bodies_; ++b) {
+    const LiquidMotion motion{std::sqrt(results[b].x), 0, results[b].y};
+    step = std::min(step, step_of_liquid(model, b, motion));
+  }
+  return step;
+}
+
+Real DeviceStepControl::observed_rate(const Model& model, const ProbedMotion& motion) {
+  const LiquidModel& liquid = *model.liquids[model.material[0]];
+  const Real mass_of_weight = liquid.rest_density / liquid.kernel.scale();
+  for (std::size_t b = 0; b < bodies_; ++b) {
+    const ModelBody& body = model.bodies[b];
+    const Real scale = mass_of_weight / body.mass;
+    for (const std::int32_t is_force : {0, 1}) {
+      for (const std::int32_t is_square : {0, 1}) {
+        program_.run("sum_changes", body.particles.size(), first_of(body), count_of(body), is_force,
+                     is_square, motion.position_before, motion.position, motion.acceleration_before,
+                     motion.acceleration, motion.weight, motion_, partial_);
+        program_.run("end_changes", Program::kGroup, groups_of(body.particles.size()), scale,
+                     is_force, is_square, static_cast<std::int32_t>(b), partial_, motion_,
+                     results_);
+      }
+    }
+  }
+  const std::vector<Double2> results = read_results();
+  Real greatest = 0;
+  for (std::size_t b = 0; b < bodies_; ++b) {
+    const ModelBody& body = model.bodies[b];
+    const Real radius = model.radius[body.particles.begin];
+    greatest = std::max(greatest, rate_of_motion(results[b].x * body.mass, results[b].y * body.mass,
+                                                 radius, body.mass));
+  }
+  return greatest;
+}
+
+std::vector<Double2> DeviceStepControl::read_results() {
+  std::vector<Double2> results(bodies_ + 1);
+  program_.read(results_, std::span(results));
+  return results;
+}
+
+}  // namespace vat

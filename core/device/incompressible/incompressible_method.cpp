@@ -1,0 +1,294 @@
+#include "core/device/incompressible/incompressible_method.h"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "core/device/incompressible/device_solve.h"
+#include "core/device/incompressible/device_step_control.h"
+#include "core/device/liquid/device_motion.h"
+#include "core/device/liquid/device_particles.h"
+#include "core/liquid/incompressible/solve_limits.h"
+#include "core/stepping/control/step_control.h"
+#include "core/support/check.h"
+
+namespace vat {
+namespace {
+
+using opencl::Buffer;
+using opencl::Program;
+
+// The argument is_held of the kernel `place`.
+constexpr std::int32_t kNotHeld = 0;
+constexpr std::int32_t kHeld = 1;
+
+/// The integrated variables, in the order of particles.
+struct IncompressibleState {
+  IncompressibleState(Program& program, std::size_t n)
+      : motion(program, n), pressure(program, n * sizeof(double)) {}
+  static constexpr std::size_t kBytes = DeviceMotion::kBytes + sizeof(double);
+
+  DeviceMotion motion;
+  Buffer pressure;
+};
+
+/// A step of the method: its times and its length [s].
+struct Step {
+  Real start, end, length;
+};
+
+/// Steps of symplectic Euler, as Stepper::take_step(). Cells, neighbours and densities are those
+/// of the present positions at the start of each step.
+class IncompressibleMethod : public DeviceMethod {
+ public:
+  IncompressibleMethod(Program& program, std::shared_ptr<const Model> model,
+                       const LiquidGeometry& geometry)
+      : program_(program),
+        model_(std::move(model)),
+        geometry_(geometry),
+        parameters_(solve_parameters(*model_)),
+        particles_(program, *model_, geometry),
+        solve_(program, model_->particle_count),
+        now_(program, model_->particle_count),
+        start_(program, model_->particle_count) {
+    if (model_->scene.numerics.control == StepControl::adaptive) {
+      control_.emplace(program, *model_, solve_.partial);
+    }
+  }
+
+  bool take_steps(const EngineInput& input, std::uint32_t steps) override;
+  void read(State& state) override;
+
+ private:
+  void upload(const State& state);
+  void copy(const IncompressibleState& from, IncompressibleState& to);
+  /// Enters the particles into their cells by the kernel `name`, and finds their neighbours and
+  /// densities.
+  template <class... Arguments>
+  void find_density_after(const char* name, const LiquidParameters& p, const Arguments&... own);
+  /// Finds the densities of the present positions at `time`.
+  void find_density_at(Real time);
+  void find_acceleration(const LiquidParameters& p, const Buffer& acceleration);
+  void take_step(const Step& step, AdvanceReport& report);
+  void project_velocities(const Step& step);
+  void correct_density(LiquidParameters p);
+  /// Takes a nominal step in the parts that the step control chooses.
+  void take_varied_step(Real start, Real end, AdvanceReport& report);
+  Real find_allowed_step(Real start, AdvanceReport& report);
+  /// Returns the rate of motion before the first step, as Stepper::probe_start().
+  Real probe_start(Real start, Real dt);
+
+  Program& program_;
+  const std::shared_ptr<const Model> model_;
+  const LiquidGeometry geometry_;
+  const SolveParameters parameters_;
+  DeviceParticles particles_;
+  DeviceSolve solve_;
+  IncompressibleState now_;
+  IncompressibleState start_;                 ///< state before a call, for a failed step
+  std::optional<DeviceStepControl> control_;  ///< only with adaptive steps
+  StepHistory history_;
+  VolumeReport report_;       ///< of the last step
+  int shift_iterations_ = 0;  ///< of the last solve for positions
+  ReadMotion read_;
+  std::vector<Real> pressures_;
+};
+
+void IncompressibleMethod::upload(const State& state) {
+  VAT_CHECK(state.now.pressure.size() == model_->particle_count);
+  now_.motion.write(state.now);
+  program_.write(now_.pressure, std::span<const Real>(state.now.pressure));
+  report_ = state.volume;
+  history_ = state.history;
+}
+
+void IncompressibleMethod::read(State& state) {
+  const std::size_t n = model_->particle_count;
+  pressures_.resize(n);
+  read_.read(program_, now_.motion, n);
+  program_.read(now_.pressure, std::span(pressures_));
+  read_.move_to(state.now);
+  state.now.pressure.swap(pressures_);
+  state.volume = report_;
+  state.history = history_;
+}
+
+void IncompressibleMethod::copy(const IncompressibleState& from, IncompressibleState& to) {
+  to.motion.copy_from(from.motion);
+  program_.copy(from.pressure, to.pressure, model_->particle_count * sizeof(double));
+}
+
+template <class... Arguments>
+void IncompressibleMethod::find_density_after(const char* name, const LiquidParameters& p,
+                                              const Arguments&... own) {
+  DeviceParticles& s = particles_;
+  s.sort_after(name, p, own...);
+  program_.run("find_density", model_->particle_count, p, s.cell_begins, s.order, now_.pressure,
+               s.sorted_place, s.sorted_motion, s.neighbour_counts, s.neighbours, solve_.density,
+               solve_.squares, solve_.partial);
+}
+
+void IncompressibleMethod::find_density_at(Real time) {
+  find_density_after("place", geometry_.at(*model_, {time, 0, 0, 0, 0}), kNotHeld,
+                     now_.motion.position, now_.motion.velocity);
+}
+
+void IncompressibleMethod::find_acceleration(const LiquidParameters& p,
+                                             const Buffer& acceleration) {
+  const DeviceParticles& s = particles_;
+  program_.run("find_acceleration", model_->particle_count, p, s.cell_begins, s.order,
+               s.sorted_place, s.sorted_motion, s.neighbour_counts, s.neighbours, acceleration);
+}
+
+void IncompressibleMethod::project_velocities(const Step& step) {
+  const std::size_t n = model_->particle_count;
+  LiquidParameters p = geometry_.at(*model_, {step.start, 0, 0, 0, 0});
+  const DeviceParticles& s = particles_;
+  SolveParameters solve = parameters_;
+  solve.dt = step.length;
+  const Vec3 wall_velocity = mean_wall_velocity(*model_, step.start, step.length);
+  for (int k = 0; k < 3; ++k) {
+    solve.wall_velocity[k] = wall_velocity[k];
+    solve.gravity[k] = model_->scene.forces.gravity ? model_->scene.gravity[k] : 0;
+    p.gravity[k] = 0;
+  }
+  set_limits(velocity_limits(model_->scene.incompressible), solve);
+  program_.run("kick", n, p, solve, s.cell_begins, s.order, s.sorted_place, s.sorted_motion,
+               s.neighbour_counts, s.neighbours, now_.motion.velocity, solve_.solve_motion);
+  program_.run("begin_projection", n, p, solve, s.cell_begins, s.order, s.sorted_place,
+               s.neighbour_counts, s.neighbours, solve_.solve_motion, solve_.density,
+               solve_.squares, now_.pressure, solve_.x, solve_.excess, solve_.gradient,
+               solve_.whole, solve_.partial);
+  report_.velocities = solve_.solve(p, solve, s, report_.velocities.iterations);
+  program_.run("end_projection", n, solve.count, solve, solve_.progress, s.order, solve_.density,
+               solve_.x, solve_.whole, now_.pressure, now_.motion.velocity);
+}
+
+void IncompressibleMethod::correct_density(LiquidParameters p) {
+  const std::size_t n = model_->particle_count;
+  const IncompressibleSolve& wanted = model_->scene.incompressible;
+  SolveReport& report = report_.places;
+  int iterations = 0;
+  for (int round = 0;; ++round) {
+    find_density_after("place", p, kHeld, now_.motion.position, now_.motion.velocity);
+    p.drift = 0;
+    report = solve_.measure_excess();
+    report.iterations = iterations;
+    if (is_solved(wanted, report) || round == kMaxCorrections) return;
+    SolveParameters solve = parameters_;
+    solve.dt = 1;  // shifts take no time
+    set_limits(place_limits(wanted, report.mean <= wanted.density_tolerance), solve);
+    program_.run("begin_shift", n, solve, particles_.sorted_place, solve_.density, solve_.squares,
+                 solve_.x, solve_.excess, solve_.gradient, solve_.whole, solve_.partial);
+    shift_iterations_ = solve_.solve(p, solve, particles_, shift_iterations_).iterations;
+    iterations += shift_iterations_;
+    program_.run("shift_places", n, solve.count, solve, particles_.order, solve_.whole,
+                 now_.motion.position);
+  }
+}
+
+void IncompressibleMethod::take_step(const Step& step, AdvanceReport& report) {
+  project_velocities(step);
+  LiquidParameters p = geometry_.at(*model_, {step.end, 0, 0, step.length, 0});
+  p.greatest_speed2 = geometry_.greatest_speed2(step.length);
+  correct_density(p);
+  program_.run("check", model_->particle_count, p, now_.motion.position, now_.motion.velocity,
+               particles_.counters);
+  report.count_evaluation(model_->particle_count);
+  report.count_steps(1, step.length, step.length);
+}
+
+Real IncompressibleMethod::probe_start(Real start, Real dt) {
+  const LiquidParameters p = geometry_.at(*model_, {start, 0, 0, 0, 0});
+  LiquidParameters moved = geometry_.at(*model_, {start + dt, 0, dt / 2, dt, 0});
+  for (int k = 0; k < 3; ++k) {  // the walls do not hold the particles
+    moved.wall_low[k] = -std::numeric_limits<double>::infinity();
+    moved.wall_high[k] = std::numeric_limits<double>::infinity();
+  }
+  const Buffer& before = solve_.whole;
+  const Buffer& after = solve_.solve_motion;
+  find_acceleration(p, before);
+  find_density_after("move", moved, now_.motion.position, now_.motion.velocity, before);
+  find_acceleration(moved, after);
+  const Real rate = control_->observed_rate(
+      *model_, {start_.motion.position, now_.motion.position, before, after, particles_.weight()});
+  copy(start_, now_);
+  particles_.clear_counters();
+  find_density_at(start);
+  return rate;
+}
+
+Real IncompressibleMethod::find_allowed_step(Real start, AdvanceReport& report) {
+  const Real step = control_->least_step(*model_, now_.motion.velocity, now_.pressure);
+  if (history_.step == 0) {
+    const Real nominal = model_->scene.numerics.step;
+    history_.observed_rate = probe_start(start, kProbeShare * std::min(step, nominal));
+    report.count_evaluation(model_->particle_count);
+    report.count_evaluation(model_->particle_count);
+  }
+  return limit_by_rate(*model_, step, history_.observed_rate);
+}
+
+void IncompressibleMethod::take_varied_step(Real start, Real end, AdvanceReport& report) {
+  const Real nominal = model_->scene.numerics.step;
+  for (Real left = nominal; left > 0;) {
+    const Real begin = start + (nominal - left);
+    const std::uint32_t count =
+        choose_step_count(find_allowed_step(begin, report), left, nominal, history_);
+    const Real dt = history_.step;
+    take_step({begin, count == 1 ? end : begin + dt, dt}, report);
+    history_.observed_rate = 0;  // a step has one evaluation
+    ++history_.held;
+    left = count == 1 ? 0 : left - dt;
+  }
+}
+
+bool IncompressibleMethod::take_steps(const EngineInput& input, std::uint32_t steps) {
+  const State& state = input.state;
+  const Real dt = model_->scene.numerics.step;
+  const auto time = [&](std::uint32_t s) { return static_cast<Real>(state.step_count + s) * dt; };
+  particles_.clear_counters();
+  if (!input.continues) {
+    upload(state);
+    find_density_at(time(0));
+  }
+  copy(now_, start_);
+  const VolumeReport report_before = report_;
+  const StepHistory history_before = history_;
+  AdvanceReport report = input.report;
+  for (std::uint32_t s = 0; s < steps; ++s) {
+    if (control_) {
+      take_varied_step(time(s), time(s + 1), report);
+    } else {
+      take_step({time(s), time(s + 1), dt}, report);
+    }
+  }
+  const Counters counters = particles_.read_counters();
+  if (counters.faults != 0) {
+    copy(start_, now_);
+    report_ = report_before;
+    history_ = history_before;
+    return false;
+  }
+  report.wall_stops += static_cast<std::uint64_t>(counters.stops);
+  input.report = std::move(report);
+  return true;
+}
+
+}  // namespace
+
+std::size_t bytes_for_incompressible(const Model& model, const LiquidGeometry& geometry) {
+  const std::size_t n = model.particle_count;
+  return DeviceParticles::bytes_for(model, geometry) + DeviceSolve::bytes_for(n) +
+         DeviceStepControl::bytes_for(model) + 2 * n * IncompressibleState::kBytes;
+}
+
+std::unique_ptr<DeviceMethod> make_incompressible_method(Program& program,
+                                                         std::shared_ptr<const Model> model,
+                                                         const LiquidGeometry& geometry) {
+  return std::make_unique<IncompressibleMethod>(program, std::move(model), geometry);
+}
+
+}  // namespace vat

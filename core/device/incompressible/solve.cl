@@ -1,0 +1,352 @@
+// Solves over the particles of an incompressible liquid, for pressures times dt^2. The names are
+// those of core/liquid/incompressible/complementarity.h and pressure_response.h. All vectors are by
+// slot. Each sum is a fixed tree: first over a group, then over the partial sums of the groups.
+
+#define GROUP 256
+
+typedef struct {
+  double wall_velocity[3];
+  double gravity[3];
+  double dt;
+  double volume;
+  double rate_factor;
+  double acceleration_factor;
+  double diagonal_factor;
+  double mean;
+  double greatest;
+  double start;
+  double negligible;
+  double least_bound;
+  double greatest_bound;
+  double bound_of_optimal;
+  double closing;
+  double left_alone;
+  double removal;
+  double max_expansion;
+  int most_iterations;
+  int count;
+} Solve;
+
+// `share`, `slope` and `length` belong to the current iteration.
+typedef struct {
+  double mean;
+  double greatest;
+  double mean_excess;
+  double greatest_excess;
+  double square;
+  double share;
+  double slope;
+  double length;
+  double longest_step;
+  int iterations;
+  int is_open;
+  int restarts;
+  int padding;
+} Progress;
+
+// The maximum, and `a` if the comparison fails because of a NaN.
+double greater(double a, double b) {
+  return a < b ? b : a;
+}
+
+double4 combined(double4 a, double4 b) {
+  return (double4)(a.x + b.x, a.y + b.y, a.z + b.z, greater(a.w, b.w));
+}
+
+// The sums of the first three components over the group, and the maximum of the fourth one.
+double4 sum_group(local double4* sums, double4 own) {
+  const int t = get_local_id(0);
+  sums[t] = own;
+  barrier(CLK_LOCAL_MEM_FENCE);
+  for (int width = GROUP / 2; width > 0; width /= 2) {
+    if (t < width) sums[t] = combined(sums[t], sums[t + width]);
+    barrier(CLK_LOCAL_MEM_FENCE);
+  }
+  return sums[0];
+}
+
+void write_partial(local double4* sums, double4 own, global double4* partial) {
+  const double4 total = sum_group(sums, own);
+  if (get_local_id(0) == 0) partial[get_group_id(0)] = total;
+}
+
+// The total of the partial sums, for one group.
+double4 sum_partial(local double4* sums, int count, global const double4* partial) {
+  double4 own = 0;
+  for (int n = get_local_id(0); n < count; n += GROUP) own = combined(own, partial[n]);
+  return sum_group(sums, own);
+}
+
+// The direction x from the image in a mirror, seen from the particle that is not reflected.
+float3 turned(uint code, float3 x) {
+  if (code == 0) return x;
+  const Mirror m = mirror_of(code);
+  return (float3)(m.axes[0] > 0 ? -x.x : x.x, m.axes[1] > 0 ? -x.y : x.y,
+                  m.axes[2] > 0 ? -x.z : x.z);
+}
+
+// The vector from a source, or from its image, to a target at n, in support radii.
+float3 way_from(const Parameters* p, uint code, const int* n, int4 source) {
+  if (code == 0) return way_to(p, n, source);
+  const Mirror m = mirror_of(code);
+  int at[3];
+  for (int k = 0; k < 3; ++k) at[k] = reflected(p, &m, n[k], k);
+  return turned(code, way_to(p, at, source));
+}
+
+// D of the motions, divided by rate_factor.
+float rate_of(const Parameters* p, int slot, global const int* begins,
+              global const int4* sorted_place, global const int* counts, global const uint* lists,
+              global const float4* motions) {
+  const int4 own = sorted_place[slot];
+  const int n[3] = {own.x, own.y, own.z};
+  const float3 mine = motions[slot].xyz;
+  float sum = 0;
+  FOR_EACH_NEIGHBOUR(p, slot, n, begins, counts, lists, {
+    const int4 other = sorted_place[j];
+    const float3 x = way_from(p, code, n, other);
+    const float square = square_of(x);
+    if (!(square < 1)) continue;
+    const float3 v = mine - turned(code, motions[j].xyz);
+    sum += as_float(other.w) * kernel_slope(sqrt(square)) * (v.x * x.x + v.y * x.y + v.z * x.z);
+  })
+  return sum;
+}
+
+// The diagonal, or 0 for a particle without neighbours.
+double diagonal_of(const Solve* solve, float weight, float squares) {
+  return solve->dt * solve->dt * solve->diagonal_factor * (double)weight * (double)squares;
+}
+
+// Computes the gradient of an unknown. Returns its part of the sums: residual, g.D g_last and
+// g.D g, and its greatest residual.
+double4 find_gradient(const Solve* solve, double x, double excess, double diagonal, double scale,
+                      double last, double* gradient) {
+  const double e = greater(excess, -x * diagonal);
+  const double residual = fabs(e) / scale;
+  const bool pushes = x * diagonal > solve->negligible * scale;
+  *gradient = e / diagonal;
+  return (double4)(residual, e * last, e * *gradient, pushes ? fabs(excess) / scale : residual);
+}
+
+// Begins a solve with the initial unknown and excess of a particle.
+double4 begin(const Solve* solve, int slot, double first, double excess, double diagonal,
+              double scale, global double* x, global double* excesses, global double* gradient,
+              global float4* whole) {
+  double g;
+  const double4 sums = find_gradient(solve, first, excess, diagonal, scale, 0, &g);
+  x[slot] = first;
+  excesses[slot] = excess;
+  gradient[slot] = g;
+  whole[slot] = 0;
+  return sums;
+}
+
+// The diagonal of a particle without neighbours.
+#define ALONE 1.0
+
+kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void begin_projection(
+    const Parameters p, const Solve solve, global const int* begins, global const int* order,
+    global const int4* sorted_place, global const int* counts, global const uint* lists,
+    global const float4* solve_motion, global const float* density, global const float* squares,
+    global const double* pressure, global double* x, global double* excess,
+    global double* gradient, global float4* whole, global double4* partial) {
+  local double4 sums[GROUP];
+  const int slot = get_global_id(0);
+  double4 own = 0;
+  if (slot < solve.count) {
+    const float rate = rate_of(&p, slot, begins, sorted_place, counts, lists, solve_motion);
+    const float weight = as_float(sorted_place[slot].w);
+    const double scale = solve.volume * (double)weight;
+    const double s = density[slot];
+    const double over = s - 1 - solve.left_alone;
+    const double removed = over < 0 ? 0 : over > solve.removal ? solve.removal : over;
+    const double room = s < 1 ? solve.closing * (1 - s) : -removed;
+    double e = scale * (solve.dt * solve.rate_factor * (double)rate - room);
+    double diagonal = diagonal_of(&solve, weight, squares[slot]);
+    double first = pressure[order[slot]] / (s * s);
+    if (!(diagonal > 0)) {
+      diagonal = ALONE;
+      first = 0;
+      if (e > 0) e = 0;
+    }
+    own = begin(&solve, slot, first, e, diagonal, scale, x, excess, gradient, whole);
+  }
+  write_partial(sums, own, partial);
+}
+
+kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void begin_shift(
+    const Solve solve, global const int4* sorted_place, global const float* density,
+    global const float* squares, global double* x, global double* excess,
+    global double* gradient, global float4* whole, global double4* partial) {
+  local double4 sums[GROUP];
+  const int slot = get_global_id(0);
+  double4 own = 0;
+  if (slot < solve.count) {
+    const float weight = as_float(sorted_place[slot].w);
+    const double scale = solve.volume * (double)weight;
+    const double over = (double)density[slot] - 1;
+    const double e = scale * (solve.max_expansion < over ? solve.max_expansion : over);
+    const double diagonal = diagonal_of(&solve, weight, squares[slot]);
+    own = begin(&solve, slot, 0, e, diagonal > 0 ? diagonal : ALONE, scale, x, excess, gradient,
+                whole);
+  }
+  write_partial(sums, own, partial);
+}
+
+// Sets the direction d to g + share d, or to g if `is_restart` is set. Shortens d so that
+// x + longest_step d >= 0. `charge` is d in single precision.
+kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void follow(
+    const int count, const int is_restart, global const Progress* progress,
+    global const double* x, global const double* excess, global const double* gradient,
+    global double* direction, global float* charge, global double4* partial) {
+  local double4 sums[GROUP];
+  if (!progress->is_open || (is_restart && !progress->restarts)) return;
+  const int slot = get_global_id(0);
+  double4 own = 0;
+  if (slot < count) {
+    const double share = is_restart ? 0 : progress->share;
+    double d = gradient[slot];
+    if (share > 0) d += share * direction[slot];
+    d = greater(d, -x[slot] / progress->longest_step);
+    direction[slot] = d;
+    charge[slot] = (float)d;
+    own.x = d * excess[slot];
+  }
+  write_partial(sums, own, partial);
+}
+
+// Sums the slope of the direction. A direction that is not one of descent is replaced.
+kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_slope(
+    const int groups, const int is_restart, global const double4* partial,
+    global Progress* progress) {
+  local double4 sums[GROUP];
+  const bool is_needed = progress->is_open && (!is_restart || progress->restarts);
+  if (!is_needed) return;
+  const double4 total = sum_partial(sums, groups, partial);
+  if (get_local_id(0) != 0) return;
+  progress->slope = total.x;
+  progress->restarts = !is_restart && !(total.x > 0) && progress->share > 0;
+}
+
+// Sets the motion to the accelerations by the charges.
+kernel void accelerate(const Parameters p, const Solve solve, global const Progress* progress,
+                       global const int* begins, global const int4* sorted_place,
+                       global const int* counts, global const uint* lists,
+                       global const float* charge, global float4* solve_motion) {
+  const int slot = get_global_id(0);
+  if (slot >= solve.count || !progress->is_open) return;
+  const int4 own = sorted_place[slot];
+  const int n[3] = {own.x, own.y, own.z};
+  const float mine = charge[slot];
+  float3 sum = 0;
+  FOR_EACH_NEIGHBOUR(&p, slot, n, begins, counts, lists, {
+    const int4 other = sorted_place[j];
+    const float3 x = way_from(&p, code, n, other);
+    const float square = square_of(x);
+    if (!(square < 1)) continue;
+    sum += (mine + charge[j]) * (as_float(other.w) * kernel_slope(sqrt(square))) * x;
+  })
+  solve_motion[slot] = (float4)(-(float)solve.acceleration_factor * sum, 0);
+}
+
+// Computes the product of the matrix and the direction from the accelerations.
+kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void compress(
+    const Parameters p, const Solve solve, global const Progress* progress,
+    global const int* begins, global const int4* sorted_place, global const int* counts,
+    global const uint* lists, global const float4* solve_motion, global const double* direction,
+    global double* product, global double4* partial) {
+  local double4 sums[GROUP];
+  if (!progress->is_open) return;
+  const int slot = get_global_id(0);
+  double4 own = 0;
+  if (slot < solve.count) {
+    const float rate = rate_of(&p, slot, begins, sorted_place, counts, lists, solve_motion);
+    const double scale = solve.volume * (double)as_float(sorted_place[slot].w);
+    const double a = -solve.dt * solve.dt * solve.rate_factor * scale * (double)rate;
+    product[slot] = a;
+    own.x = direction[slot] * a;
+  }
+  write_partial(sums, own, partial);
+}
+
+// Chooses the length of the step to the minimum along the direction.
+kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_length(
+    const Solve solve, const int groups, global const double4* partial,
+    global Progress* progress) {
+  local double4 sums[GROUP];
+  if (!progress->is_open) return;
+  const double curvature = sum_partial(sums, groups, partial).x;
+  if (get_local_id(0) != 0) return;
+  const double optimal = curvature > 0 ? progress->slope / curvature : 0;
+  const double longest = progress->longest_step;
+  progress->length = longest < optimal ? longest : optimal;
+  const double next = solve.bound_of_optimal * optimal;
+  progress->longest_step = next < solve.least_bound      ? solve.least_bound
+                           : next > solve.greatest_bound ? solve.greatest_bound
+                                                         : next;
+}
+
+kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void take_step(
+    const Solve solve, global const Progress* progress, global const int4* sorted_place,
+    global const float* squares, global const double* direction, global const double* product,
+    global const float4* solve_motion, global double* x, global double* excess,
+    global double* gradient, global float4* whole, global double4* partial) {
+  local double4 sums[GROUP];
+  if (!progress->is_open) return;
+  const int slot = get_global_id(0);
+  double4 own = 0;
+  if (slot < solve.count) {
+    const double length = progress->length;
+    double next = x[slot];
+    double e = excess[slot];
+    if (length > 0) {
+      next += length * direction[slot];
+      if (next < 0) next = 0;  // by rounding
+      e -= length * product[slot];
+      whole[slot] += (float)length * solve_motion[slot];
+    }
+    const float weight = as_float(sorted_place[slot].w);
+    const double diagonal = diagonal_of(&solve, weight, squares[slot]);
+    double g;
+    own = find_gradient(&solve, next, e, diagonal > 0 ? diagonal : ALONE,
+                        solve.volume * (double)weight, gradient[slot], &g);
+    x[slot] = next;
+    excess[slot] = e;
+    gradient[slot] = g;
+  }
+  write_partial(sums, own, partial);
+}
+
+// Ends an iteration, or begins a solve if `is_start` is set, and decides whether another iteration
+// follows.
+kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void end_iteration(
+    const Solve solve, const int groups, const int is_start, global const double4* partial,
+    global Progress* progress) {
+  local double4 sums[GROUP];
+  const bool is_needed = is_start || progress->is_open;
+  if (!is_needed) return;
+  const double4 total = sum_partial(sums, groups, partial);
+  if (get_local_id(0) != 0) return;
+  const double last = progress->square;
+  const double mean = total.x / (double)solve.count;
+  progress->share = is_start || !(last > 0) ? 0 : greater(0, (total.z - total.y) / last);
+  progress->square = total.z;
+  progress->mean = mean;
+  progress->greatest = total.w;
+  if (is_start) progress->longest_step = solve.least_bound;
+  progress->iterations = is_start ? 0 : progress->iterations + 1;
+  const bool is_far = !isnan(mean) && (mean > solve.mean || total.w > solve.greatest);
+  const bool must_begin = is_start && mean > solve.start;
+  progress->is_open = (is_far || must_begin) && progress->iterations < solve.most_iterations;
+}
+
+// Sets the excess of the density to the sums of find_density.
+kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void measure_excess(
+    const int count, const int groups, global const double4* partial, global Progress* progress) {
+  local double4 sums[GROUP];
+  const double4 total = sum_partial(sums, groups, partial);
+  if (get_local_id(0) != 0) return;
+  progress->mean_excess = total.x / (double)count;
+  progress->greatest_excess = total.w;
+}

@@ -1,0 +1,41 @@
+#include "core/device/liquid/device_motion.h"
+
+#include "core/support/check.h"
+
+namespace vat {
+
+using opencl::Program;
+
+DeviceMotion::DeviceMotion(Program& program, std::size_t particles)
+    : position(program, particles * sizeof(Vec3)),
+      velocity(program, particles * sizeof(Vec3)),
+      program_(program),
+      count_(particles) {
+  static_assert(sizeof(Vec3) == 3 * sizeof(double));
+}
+
+void DeviceMotion::write(const Configuration& from) {
+  VAT_CHECK(from.position.size() == count_ && from.velocity.size() == count_);
+  program_.write(position, std::span(from.position));
+  program_.write(velocity, std::span(from.velocity));
+}
+
+void DeviceMotion::copy_from(const DeviceMotion& other) {
+  VAT_CHECK(other.count_ == count_);
+  program_.copy(other.position, position, count_ * sizeof(Vec3));
+  program_.copy(other.velocity, velocity, count_ * sizeof(Vec3));
+}
+
+void ReadMotion::read(Program& program, const DeviceMotion& from, std::size_t particles) {
+  positions_.resize(particles);
+  velocities_.resize(particles);
+  program.read(from.position, std::span(positions_));
+  program.read(from.velocity, std::span(velocities_));
+}
+
+void ReadMotion::move_to(Configuration& to) {
+  to.position.swap(positions_);
+  to.velocity.swap(velocities_);
+}
+
+}  // namespace vat

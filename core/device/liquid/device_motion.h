@@ -1,0 +1,42 @@
+#pragma once
+
+#include <vector>
+
+#include "core/device/opencl/program.h"
+#include "core/state/state.h"
+
+namespace vat {
+
+/// Positions and velocities of particles on a device, in the order of the particles. The functions
+/// throw opencl::DeviceFailure.
+class DeviceMotion {
+ public:
+  DeviceMotion(opencl::Program& program, std::size_t particles);
+
+  /// Returns the bytes of a particle.
+  static constexpr std::size_t kBytes = 6 * sizeof(double);
+
+  void write(const Configuration& from);
+  void copy_from(const DeviceMotion& other);
+
+  opencl::Buffer position;
+  opencl::Buffer velocity;
+
+ private:
+  opencl::Program& program_;
+  const std::size_t count_;
+};
+
+/// A copy of a DeviceMotion on the host. A reading that fails thus changes no state.
+class ReadMotion {
+ public:
+  void read(opencl::Program& program, const DeviceMotion& from, std::size_t particles);
+  /// Moves the copy to `to`.
+  void move_to(Configuration& to);
+
+ private:
+  std::vector<Vec3> positions_;
+  std::vector<Vec3> velocities_;
+};
+
+}  // namespace vat

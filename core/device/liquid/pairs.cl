@@ -1,0 +1,263 @@
+// Pairs of particles: neighbours, their lists, and forces. A wall is a mirror: the images near a
+// particle are the particles near its own images. See core/liquid/tait/weakly_compressible.h for the
+// method.
+
+// The kernel wendland_c2, see core/kernels/smoothing_kernel.h.
+float kernel_value(float q) {
+  const float rest = 1 - q;
+  const float rest2 = rest * rest;
+  return rest2 * rest2 * (4 * q + 1);
+}
+float kernel_slope(float q) {
+  const float rest = 1 - q;
+  return rest * rest * rest;
+}
+
+// A mirror: for each axis 0, or 1 for the lower wall, or 2 for the upper wall.
+typedef struct {
+  int axes[3];
+} Mirror;
+
+int reflected(const Parameters* p, const Mirror* m, int place, int axis) {
+  if (m->axes[axis] == 0) return place;
+  return (m->axes[axis] == 1 ? p->twice_low[axis] : p->twice_high[axis]) - place;
+}
+
+// Bit 2 k + 1 of the result: the lower wall across axis k is within a support radius. Bit 2 k + 2:
+// the upper wall.
+int walls_near(const Parameters* p, const int* n) {
+  const int twice_reach = 2 * p->support;
+  int near = 0;
+  for (int k = 0; k < 3; ++k) {
+    if (((p->walls >> (2 * k)) & 1) && 2 * n[k] - p->twice_low[k] < twice_reach) near |= 2 << (2 * k);
+    if (((p->walls >> (2 * k + 1)) & 1) && p->twice_high[k] - 2 * n[k] < twice_reach) {
+      near |= 4 << (2 * k);
+    }
+  }
+  return near;
+}
+
+// Runs BODY for each mirror `m` whose images may be near the position n: also for no reflection.
+#define FOR_EACH_MIRROR(p, n, BODY)                                            \
+  {                                                                            \
+    const int near = walls_near(p, n);                                         \
+    Mirror m;                                                                  \
+    for (m.axes[0] = 0; m.axes[0] < 3; ++m.axes[0]) {                          \
+      if (m.axes[0] != 0 && !((near >> m.axes[0]) & 1)) continue;              \
+      for (m.axes[1] = 0; m.axes[1] < 3; ++m.axes[1]) {                        \
+        if (m.axes[1] != 0 && !((near >> (2 + m.axes[1])) & 1)) continue;      \
+        for (m.axes[2] = 0; m.axes[2] < 3; ++m.axes[2]) {                      \
+          if (m.axes[2] != 0 && !((near >> (4 + m.axes[2])) & 1)) continue;    \
+          BODY                                                                 \
+        }                                                                      \
+      }                                                                        \
+    }                                                                          \
+  }
+
+// Runs BODY for each row of cells near the position `at`, with the slots [begin, end).
+#define FOR_EACH_ROW(p, at, begins, BODY)                                      \
+  {                                                                            \
+    int low[3];                                                                \
+    int high[3];                                                               \
+    for (int k = 0; k < 3; ++k) {                                              \
+      const int c = at[k] >> (p)->cell_bits;                                   \
+      low[k] = clamp(c - (p)->reach, 0, (p)->cells[k] - 1);                             \
+      high[k] = clamp(c + (p)->reach, 0, (p)->cells[k] - 1);                            \
+    }                                                                          \
+    for (int z = low[2]; z <= high[2]; ++z) {                                  \
+      for (int y = low[1]; y <= high[1]; ++y) {                                \
+        const int row = (z * (p)->cells[1] + y) * (p)->cells[0];               \
+        const int begin = begins[row + low[0]];                                \
+        const int end = begins[row + high[0] + 1];                             \
+        BODY                                                                   \
+      }                                                                        \
+    }                                                                          \
+  }
+
+// The part of the relative density that a particle and its own images have in excess of 1.
+float own_excess(const Parameters* p, const int* n, float weight) {
+  float own = 1;
+  FOR_EACH_MIRROR(p, n, {
+    if (m.axes[0] + m.axes[1] + m.axes[2] == 0) continue;
+    float square = 0;
+    for (int k = 0; k < 3; ++k) {
+      const float way = (float)(n[k] - reflected(p, &m, n[k], k)) * p->in_supports;
+      square += way * way;
+    }
+    if (square < 1) own += kernel_value(sqrt(square));
+  })
+  return max(0.0f, weight * own - 1);
+}
+
+// Lists of neighbours: entry k of slot s is entry_of(s, k). An entry is the slot of the neighbour
+// and, in the bits from MIRROR_BITS on, the axes of the mirror. A list with more than LIST_LENGTH
+// neighbours is incomplete.
+#define LIST_LENGTH 64
+#define LIST_GROUP 32
+#define MIRROR_BITS 26
+#define SLOT_MASK ((1u << MIRROR_BITS) - 1)
+
+int entry_of(int slot, int k) {
+  return ((slot / LIST_GROUP) * LIST_LENGTH + k) * LIST_GROUP + slot % LIST_GROUP;
+}
+
+uint code_of(const Mirror* m) {
+  return (uint)(m->axes[0] + 4 * m->axes[1] + 16 * m->axes[2]) << MIRROR_BITS;
+}
+
+Mirror mirror_of(uint code) {
+  Mirror m;
+  for (int k = 0; k < 3; ++k) m.axes[k] = (code >> (MIRROR_BITS + 2 * k)) & 3;
+  return m;
+}
+
+// Runs BODY for each source `j` in the cells near a particle at n. `code` is the code of the mirror
+// of the image, or 0. `at` is the position n, or its reflection in this mirror.
+#define FOR_EACH_CANDIDATE(p, n, begins, BODY)                                 \
+  FOR_EACH_MIRROR(p, n, {                                                      \
+    int at[3];                                                                 \
+    for (int k = 0; k < 3; ++k) at[k] = reflected(p, &m, n[k], k);             \
+    const uint code = code_of(&m);                                             \
+    FOR_EACH_ROW(p, at, begins, {                                              \
+      for (int j = begin; j < end; ++j) BODY                                   \
+    })                                                                         \
+  })
+
+// Runs BODY for each source `j` that may be near the particle in `slot` at n. `code` is the code of
+// the mirror of the image, or 0.
+#define FOR_EACH_NEIGHBOUR(p, slot, n, begins, counts, lists, BODY)            \
+  if (counts[slot] <= LIST_LENGTH) {                                           \
+    const int length = counts[slot];                                           \
+    for (int entry = 0; entry < length; ++entry) {                             \
+      const uint listed = lists[entry_of(slot, entry)];                        \
+      const int j = listed & SLOT_MASK;                                        \
+      const uint code = listed & ~SLOT_MASK;                                   \
+      BODY                                                                     \
+    }                                                                          \
+  } else {                                                                     \
+    FOR_EACH_CANDIDATE(p, n, begins, BODY)                                     \
+  }
+
+// The vector from a source to a target, or to its image at `at`, in support radii.
+float3 way_to(const Parameters* p, const int* at, int4 source) {
+  return (float3)((float)(at[0] - source.x), (float)(at[1] - source.y), (float)(at[2] - source.z)) *
+         p->in_supports;
+}
+
+float square_of(float3 x) {
+  return x.x * x.x + x.y * x.y + x.z * x.z;
+}
+
+// The pressure of the image of a particle at `place` includes the hydrostatic pressure difference;
+// see ImagePressure.
+float image_pressure(const Parameters* p, const Mirror* m, int4 place, float pressure) {
+  if (pressure <= 0) return pressure;
+  const int n[3] = {place.x, place.y, place.z};
+  float more = 0;
+  for (int k = 0; k < 3; ++k) {
+    more += p->fall[k] * ((float)(reflected(p, m, n[k], k) - n[k]) * p->unit);
+  }
+  return max(0.0f, pressure + pressure / (pressure + p->layer) * (p->density * more));
+}
+
+// Avoids a division by 0 in viscous forces: (h/2)^2 / 100 in units of the support radius h.
+#define SOFTENING (0.01f / 4)
+
+// Adds the force of a source on a target.
+void add_force(const Parameters* p, const int* n, float4 mine, int4 source, float4 its,
+               float* sum) {
+  const float3 x = way_to(p, n, source);
+  const float square = square_of(x);
+  if (!(square < 1)) return;
+  const float approach = (mine.x - its.x) * x.x + (mine.y - its.y) * x.y + (mine.z - its.z) * x.z;
+  const float force = p->viscosity * approach / (square + SOFTENING) - (mine.w + its.w);
+  const float share = force * (as_float(source.w) * kernel_slope(sqrt(square)));
+  sum[0] += share * x.x;
+  sum[1] += share * x.y;
+  sum[2] += share * x.z;
+}
+
+// The velocity of the image of a particle with the velocity v, see mirrored_velocity().
+float3 mirrored_velocity(const Parameters* p, const Mirror* m, float4 motion) {
+  float v[3] = {motion.x, motion.y, motion.z};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (m->axes[axis] == 0) continue;
+    const int wall = 2 * axis + m->axes[axis] - 1;
+    const bool has_no_slip = (p->no_slip >> wall) & 1;
+    for (int k = 0; k < 3; ++k) {
+      const float of_wall = p->speeds_of_walls[3 * wall + k];
+      if (k == axis || has_no_slip) v[k] = -(v[k] - of_wall) + of_wall;
+    }
+  }
+  return (float3)(v[0], v[1], v[2]);
+}
+
+// Whether images in this mirror are viscous, see add_viscous_image_forces().
+bool is_viscous(const Parameters* p, const Mirror* m) {
+  int walls = 0;
+  for (int k = 0; k < 3; ++k) walls |= m->axes[k] > 0 ? 1 << (2 * k + m->axes[k] - 1) : 0;
+  return p->is_thick || (walls & p->no_slip);
+}
+
+// Adds the force of the image of a source on a target.
+void add_force_of_image(const Parameters* p, const Mirror* m, const int* n, float4 mine,
+                        int4 source, float4 its, float* sum) {
+  int at[3];
+  for (int k = 0; k < 3; ++k) at[k] = reflected(p, m, n[k], k);
+  const float3 x = way_to(p, at, source);
+  const float square = square_of(x);
+  if (!(square < 1)) return;
+  const float force = -(mine.w + image_pressure(p, m, source, its.w));
+  const float share = force * (as_float(source.w) * kernel_slope(sqrt(square)));
+  sum[0] += share * (m->axes[0] > 0 ? -x.x : x.x);
+  sum[1] += share * (m->axes[1] > 0 ? -x.y : x.y);
+  sum[2] += share * (m->axes[2] > 0 ? -x.z : x.z);
+  if (!is_viscous(p, m)) return;
+  const float3 v = mirrored_velocity(p, m, its);
+  const float drag = p->viscosity / (square + SOFTENING) *
+                     (as_float(source.w) * kernel_slope(sqrt(square)));
+  sum[0] += drag * (x.x * x.x) * (mine.x - v.x);
+  sum[1] += drag * (x.y * x.y) * (mine.y - v.y);
+  sum[2] += drag * (x.z * x.z) * (mine.z - v.z);
+}
+
+// Adds the force of a source, or of the image of a source, on a target.
+void add_force_of(const Parameters* p, uint code, const int* n, float4 mine, int4 source,
+                  float4 its, float* sum) {
+  if (code == 0) {
+    add_force(p, n, mine, source, its, sum);
+  } else {
+    const Mirror m = mirror_of(code);
+    add_force_of_image(p, &m, n, mine, source, its, sum);
+  }
+}
+
+// The acceleration of the particle in `slot` by pressure, viscosity, gravity and settling.
+float3 acceleration_of(const Parameters* p, int slot, global const int* begins,
+                       global const int4* sorted_place, global const float4* sorted_motion,
+                       global const int* counts, global const uint* lists) {
+  const int4 own = sorted_place[slot];
+  const float4 mine = sorted_motion[slot];
+  const int n[3] = {own.x, own.y, own.z};
+  float sum[3] = {0, 0, 0};
+  FOR_EACH_NEIGHBOUR(p, slot, n, begins, counts, lists, {
+    add_force_of(p, code, n, mine, sorted_place[j], sorted_motion[j], sum);
+  })
+  const float v[3] = {mine.x, mine.y, mine.z};
+  float a[3];
+  for (int k = 0; k < 3; ++k) {
+    a[k] = p->gravity[k] + p->slope_factor * sum[k] - p->drag * (v[k] - p->still[k]);
+  }
+  return (float3)(a[0], a[1], a[2]);
+}
+
+// The accelerations in the order of particles.
+kernel void find_acceleration(const Parameters p, global const int* begins,
+                              global const int* order, global const int4* sorted_place,
+                              global const float4* sorted_motion, global const int* counts,
+                              global const uint* lists, global float4* acceleration) {
+  const int slot = get_global_id(0);
+  if (slot >= p.count) return;
+  const float3 a = acceleration_of(&p, slot, begins, sorted_place, sorted_motion, counts, lists);
+  acceleration[order[slot]] = (float4)(a, 0);
+}

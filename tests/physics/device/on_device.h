@@ -1,0 +1,144 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <span>
+#include <stdexcept>
+
+#include "core/device/device_use.h"
+#include "core/simulation/simulation.h"
+#include "tests/support/scenes.h"
+
+/// Simulations on an OpenCL device. The test machine computes them by PoCL.
+namespace vat::test {
+
+/// A scene of a table, as changes of a common scene.
+struct SceneCase {
+  const char* name;
+  std::function<void(Scene&)> edit;
+};
+
+inline std::unique_ptr<StepEngine> make_device(const char* text = "opencl") {
+  Result<std::unique_ptr<StepEngine>> engine = make_engine(parse_device(text).value());
+  if (!engine) throw std::runtime_error(engine.errors().front().message);
+  return std::move(engine).value();
+}
+
+/// Creates a simulation on a device. Throws if the device lacks a feature of the scene.
+inline Simulation make_on_device(const Scene& scene) {
+  Simulation simulation = make_simulation(scene);
+  if (const Status set = simulation.set_engine(make_device()); !set) {
+    throw std::runtime_error(set.errors().front().path);
+  }
+  return simulation;
+}
+
+/// Returns the greatest difference of positions after the same time [m].
+inline Real difference(const Simulation& a, const Simulation& b) {
+  Real greatest = 0;
+  for (std::size_t body = 0; body < a.bodies().size(); ++body) {
+    const BodyView one = a.bodies()[body];
+    const BodyView other = b.bodies()[body];
+    for (std::size_t i = 0; i < one.positions.size(); ++i) {
+      greatest = std::max(greatest, (one.positions[i] - other.positions[i]).norm());
+    }
+  }
+  return greatest;
+}
+
+/// Changes of a scene with a vat and a box of liquid as its first body, for any solver.
+inline const SceneCase kCommonScenes[] = {
+    {"unchanged", [](Scene&) {}},
+    {"in a corner with a lid",
+     [](Scene& scene) {
+       scene.vat->lid = true;
+       scene.vat->max = {0.3, 0.12, 0.25};
+     }},
+    {"sliding vat",
+     [](Scene& scene) {
+       scene.vat->motion = SlideMotion{Vec3(1, 0, 0.5).normalized(), 0.1, 0.2};
+     }},
+    {"two dimensions",
+     [](Scene& scene) {
+       scene.dimensions = 2;
+       std::get<BoxShape>(scene.bodies[0].shape).center.y() = 0;
+       scene.vat->min.y() = -1;
+       scene.vat->max.y() = 1;
+     }},
+    {"settling",
+     [](Scene& scene) {
+       scene.settling = Settling{20, 0.015};
+     }},
+    {"two bodies",
+     [](Scene& scene) {
+       scene.bodies.push_back(scene.bodies[0]);
+       scene.bodies[1].name = "drop";
+       scene.bodies[1].shape = SphereShape{{0.22, 0.06, 0.2}, 0.04};
+       scene.bodies[1].velocity = {-1, 0, -2};
+     }},
+};
+
+/// Makes three walls of the vat no-slip walls. The floor moves like a belt.
+inline void set_no_slip(Scene& scene) {
+  for (const std::size_t wall : {0U, 2U, 4U}) scene.vat->walls[wall].no_slip = true;
+  scene.vat->walls[4].velocity = {1, 0, 0};
+}
+
+/// Expects that the device differs from double precision by at most three times as much as the CPU
+/// with single precision.
+inline void expect_accuracy_of_cpu(const Scene& common, std::span<const SceneCase> cases,
+                                   std::uint32_t steps) {
+  for (const SceneCase& one : cases) {
+    SCOPED_TRACE(one.name);
+    Scene scene = common;
+    one.edit(scene);
+    Simulation device = make_on_device(scene);
+    Simulation single = make_simulation(scene);
+    scene.pair_precision = PairPrecision::double_precision;
+    Simulation exact = make_simulation(scene);
+    const AdvanceReport report = device.advance(steps);
+    const AdvanceReport expected = single.advance(steps);
+    exact.advance(steps);
+    EXPECT_EQ(report.device_steps, steps);
+    EXPECT_EQ(report.steps, expected.steps);
+    EXPECT_EQ(report.force_evaluations, expected.force_evaluations);
+    EXPECT_EQ(report.wall_stops, expected.wall_stops);
+    EXPECT_LT(difference(device, exact), 3 * difference(single, exact));
+    EXPECT_GT(difference(device, make_simulation(scene)), 1e-4) << "it moves";
+  }
+}
+
+/// Expects that the CPU takes the steps of a scene, because one of them fails, with the same
+/// results as without a device.
+inline void expect_steps_of_cpu(const Scene& scene, std::uint32_t steps) {
+  Simulation device = make_on_device(scene);
+  Simulation cpu = make_simulation(scene);
+  const AdvanceReport report = device.advance(steps);
+  const AdvanceReport expected = cpu.advance(steps);
+  EXPECT_EQ(report.device_steps, 0U);
+  EXPECT_GT(report.undone_steps, 0U);
+  EXPECT_EQ(report.undone_steps, expected.undone_steps);
+  EXPECT_EQ(report.steps, expected.steps);
+  EXPECT_EQ(report.wall_stops, expected.wall_stops);
+  EXPECT_EQ(device.state_hash(), cpu.state_hash());
+}
+
+/// Expects that the device refuses each scene. The name of a case is the path of the error.
+inline void expect_refusals(const Scene& common, std::span<const SceneCase> cases) {
+  for (const SceneCase& one : cases) {
+    SCOPED_TRACE(one.name);
+    Scene scene = common;
+    one.edit(scene);
+    Simulation simulation = make_simulation(scene);
+    const Status set = simulation.set_engine(make_device());
+    ASSERT_FALSE(set.ok());
+    EXPECT_TRUE(std::ranges::any_of(set.errors(), [&](const Error& error) {
+      return error.path == one.name && error.code == "not_on_device";
+    })) << set.errors().front().path;
+  }
+}
+
+}  // namespace vat::test
