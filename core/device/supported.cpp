@@ -15,12 +15,21 @@ Errors find_features_not_on_device(const Model& model) {
   const bool is_incompressible = scene.pressure_solver == PressureSolver::incompressible;
   reject(scene.pressure_solver == PressureSolver::gas, "/pressure_solver",
          "must be tait or incompressible on a device");
-  reject(scene.bodies.empty(), "/bodies", "must contain a liquid on a device");
+  reject(model.liquid_count == 0, "/bodies", "must contain a liquid on a device");
   for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const BodyDescription& body = scene.bodies[b];
     const std::string path = "/bodies/" + std::to_string(b);
-    reject(scene.bodies[b].kind != BodyKind::liquid, path + "/kind", "must be liquid on a device");
-    reject(scene.bodies[b].material != scene.bodies[0].material, path + "/material",
-           "must be the material of the first body on a device");
+    const bool is_supported =
+        body.kind == BodyKind::liquid || (body.kind == BodyKind::rigid && body.fixed);
+    reject(!is_supported, path + "/kind", "must be liquid, or rigid and fixed, on a device");
+    if (body.kind == BodyKind::liquid) {
+      reject(model.bodies[b].material != model.material.at(0), path + "/material",
+             "must be the material of the other liquids on a device");
+    }
+    if (body.kind != BodyKind::rigid) continue;
+    reject(body.motion.has_value(), path + "/motion", "must be absent on a device");
+    reject(!body.velocity.isZero(0), path + "/velocity", "must be 0 on a device");
+    reject(!body.angular_velocity.isZero(0), path + "/angular_velocity", "must be 0 on a device");
   }
   if (!errors.empty()) return errors;
   reject(!scene.emitters.empty(), "/emitters", "must be empty on a device");
@@ -41,8 +50,10 @@ Errors find_features_not_on_device(const Model& model) {
          "must be fixed on a device");
   reject(is_incompressible && control == StepControl::local, "/numerics/control",
          "must be fixed or adaptive on a device");
-  reject(must_solve_viscosity(model, scene.numerics.step), "/numerics/step",
-         "must resolve the viscosity of the liquid on a device");
+  const Real step = scene.numerics.step;
+  reject(
+      is_incompressible ? must_solve_own_damping(model, step) : must_solve_viscosity(model, step),
+      "/numerics/step", "must resolve the viscosity of the liquid on a device");
   reject(model.has_surface_tension || model.cohesion.has_value(), "/materials",
          "must have no surface tension on a device");
   reject(model.is_filled, "/vat/lid", "must be false for a vat full of liquid on a device");

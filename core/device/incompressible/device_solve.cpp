@@ -39,7 +39,8 @@ SolveParameters solve_parameters(const Model& model) {
   p.left_alone = room.left_alone;
   p.removal = room.removal;
   p.max_expansion = kMaxExpansion;
-  p.count = static_cast<std::int32_t>(model.particle_count);
+  p.count = static_cast<std::int32_t>(model.liquid_count);
+  p.slots = static_cast<std::int32_t>(model.particle_count);
   return p;
 }
 
@@ -51,25 +52,26 @@ void set_limits(const SolveLimits& limits, SolveParameters& p) {
   p.most_iterations = limits.most_iterations;
 }
 
-DeviceSolve::DeviceSolve(Program& program, std::size_t n)
-    : density(program, n * sizeof(float)),
-      squares(program, n * sizeof(float)),
-      solve_motion(program, n * sizeof(Float4)),
-      whole(program, n * sizeof(Float4)),
-      x(program, n * sizeof(double)),
-      excess(program, n * sizeof(double)),
-      gradient(program, n * sizeof(double)),
-      partial(program, bytes_of_partial(n)),
+DeviceSolve::DeviceSolve(Program& program, const Model& model)
+    : squares(program, model.particle_count * sizeof(float)),
+      solve_motion(program, model.particle_count * sizeof(Float4)),
+      whole(program, model.particle_count * sizeof(Float4)),
+      x(program, model.particle_count * sizeof(double)),
+      excess(program, model.particle_count * sizeof(double)),
+      gradient(program, model.particle_count * sizeof(double)),
+      partial(program, bytes_of_partial(model.particle_count)),
       progress(program, sizeof(SolveProgress)),
       program_(program),
-      count_(n),
-      groups_(groups_of(n)),
-      direction_(program, n * sizeof(double)),
-      product_(program, n * sizeof(double)),
-      charge_(program, n * sizeof(float)) {}
+      slots_(model.particle_count),
+      count_(static_cast<std::int32_t>(model.liquid_count)),
+      groups_(groups_of(slots_)),
+      direction_(program, slots_ * sizeof(double)),
+      product_(program, slots_ * sizeof(double)),
+      charge_(program, slots_ * sizeof(float)) {}
 
-std::size_t DeviceSolve::bytes_for(std::size_t n) {
-  return n * (5 * sizeof(double) + 2 * sizeof(Float4) + 3 * sizeof(float)) + bytes_of_partial(n) +
+std::size_t DeviceSolve::bytes_for(const Model& model) {
+  const std::size_t n = model.particle_count;
+  return n * (5 * sizeof(double) + 2 * sizeof(Float4) + 2 * sizeof(float)) + bytes_of_partial(n) +
          sizeof(SolveProgress);
 }
 
@@ -77,16 +79,16 @@ void DeviceSolve::iterate(const LiquidParameters& p, const SolveParameters& solv
                           const DeviceParticles& s) {
   constexpr std::size_t kOne = Program::kGroup;
   for (const std::int32_t is_restart : {0, 1}) {
-    program_.run("follow", count_, solve.count, is_restart, progress, x, excess, gradient,
+    program_.run("follow", slots_, solve.slots, is_restart, progress, x, excess, gradient,
                  direction_, charge_, partial);
     program_.run("find_slope", kOne, groups_, is_restart, partial, progress);
   }
-  program_.run("accelerate", count_, p, solve, progress, s.cell_begins, s.sorted_place,
+  program_.run("accelerate", slots_, p, solve, progress, s.cell_begins, s.sorted_place,
                s.neighbour_counts, s.neighbours, charge_, solve_motion);
-  program_.run("compress", count_, p, solve, progress, s.cell_begins, s.sorted_place,
+  program_.run("compress", slots_, p, solve, progress, s.cell_begins, s.sorted_place,
                s.neighbour_counts, s.neighbours, solve_motion, direction_, product_, partial);
   program_.run("find_length", kOne, solve, groups_, partial, progress);
-  program_.run("take_step", count_, solve, progress, s.sorted_place, squares, direction_, product_,
+  program_.run("take_step", slots_, solve, progress, s.sorted_place, squares, direction_, product_,
                solve_motion, x, excess, gradient, whole, partial);
   program_.run("end_iteration", kOne, solve, groups_, std::int32_t{0}, partial, progress);
 }
@@ -107,8 +109,7 @@ SolveReport DeviceSolve::solve(const LiquidParameters& p, const SolveParameters&
 }
 
 SolveReport DeviceSolve::measure_excess() {
-  const auto count = static_cast<std::int32_t>(count_);
-  program_.run("measure_excess", Program::kGroup, count, groups_, partial, progress);
+  program_.run("measure_excess", Program::kGroup, count_, groups_, partial, progress);
   const SolveProgress read = read_progress();
   return {0, read.mean_excess, read.greatest_excess};
 }

@@ -33,7 +33,8 @@ struct SolveParameters {
   double removal;
   double max_expansion;  ///< kMaxExpansion
   std::int32_t most_iterations;
-  std::int32_t count;  ///< particles
+  std::int32_t count;  ///< liquid particles
+  std::int32_t slots;  ///< liquid and solid particles
 };
 
 /// The struct Progress of solve.cl, with the same members in the same order.
@@ -67,8 +68,8 @@ void set_limits(const SolveLimits& limits, SolveParameters& parameters);
 /// of iterations does not depend on the host. The functions throw opencl::DeviceFailure.
 class DeviceSolve {
  public:
-  DeviceSolve(opencl::Program& program, std::size_t particles);
-  static std::size_t bytes_for(std::size_t particles);
+  DeviceSolve(opencl::Program& program, const Model& model);
+  static std::size_t bytes_for(const Model& model);
 
   /// Iterates from the unknowns and excesses that begin_projection or begin_shift has computed. The
   /// sum `whole` of accelerations is then that of the change of x. `expected` is the expected
@@ -80,7 +81,7 @@ class DeviceSolve {
   SolveReport measure_excess();
 
   // Buffers by slot, see solve.cl.
-  opencl::Buffer density, squares;
+  opencl::Buffer squares;
   opencl::Buffer solve_motion, whole;
   opencl::Buffer x, excess, gradient;
   opencl::Buffer partial;
@@ -92,7 +93,8 @@ class DeviceSolve {
   SolveProgress read_progress();
 
   opencl::Program& program_;
-  const std::size_t count_;
+  const std::size_t slots_;
+  const std::int32_t count_;  ///< liquid particles
   const std::int32_t groups_;
   opencl::Buffer direction_, product_, charge_;
 };

@@ -31,11 +31,14 @@ std::int32_t count_of(const ModelBody& body) {
 DeviceStepControl::DeviceStepControl(Program& program, const Model& model, const Buffer& partial)
     : program_(program),
       partial_(partial),
-      guard_(guard_bounds(model)),
-      bodies_(model.bodies.size()),
+      travel_(guard_bounds(model).travel[model.body[0]]),
       motion_(program, kMotionBytes),
-      results_(program, (bodies_ + 1) * sizeof(Double2)),
+      results_(program, (model.bodies.size() + 1) * sizeof(Double2)),
       histogram_(program, kDigits * sizeof(std::int32_t)) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const ModelBody& body = model.bodies[b];
+    if (body.kind == BodyKind::liquid && body.particles.size() > 0) bodies_.push_back(b);
+  }
   const StepBounds bounds = find_step_bounds(model);
   own_step_ = std::min(bounds.scene_step, std::ranges::min(bounds.own_step));
 }
@@ -60,23 +63,24 @@ void DeviceStepControl::select_pressure(const ModelBody& body, std::int32_t resu
 
 Real DeviceStepControl::least_step(const Model& model, const Buffer& velocity,
                                    const Buffer& pressure) {
-  const std::size_t n = model.particle_count;
+  const std::size_t n = model.liquid_count;
   const auto count = static_cast<std::int32_t>(n);
-  const auto last = static_cast<std::int32_t>(bodies_);
+  const auto last = static_cast<std::int32_t>(bodies_.size());
   program_.run("sum_velocities", n, count, velocity, partial_);
   program_.run("find_mean", Program::kGroup, count, groups_of(n), last, partial_, motion_,
                results_);
-  for (std::int32_t b = 0; b < last; ++b) {
-    const ModelBody& body = model.bodies[static_cast<std::size_t>(b)];
+  std::int32_t result = 0;
+  for (const std::size_t b : bodies_) {
+    const ModelBody& body = model.bodies[b];
     program_.run("find_relative_speeds", body.particles.size(), first_of(body), count_of(body),
                  velocity, motion_, partial_);
-    select_pressure(body, b, pressure);
+    select_pressure(body, result++, pressure);
   }
   const std::vector<Double2> results = read_results();
-  Real step = step_of_particles(own_step_, guard_, std::sqrt(results.back().x));
-  for (std::size_t b = 0; b < bodies_; ++b) {
-    const LiquidMotion motion{std::sqrt(results[b].x), 0, results[b].y};
-    step = std::min(step, step_of_liquid(model, b, motion));
+  Real step = step_of_particles(own_step_, travel_, std::sqrt(results.back().x));
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    const LiquidMotion motion{std::sqrt(results[k].x), 0, results[k].y};
+    step = std::min(step, step_of_liquid(model, bodies_[k], motion));
   }
   return step;
 }
@@ -84,33 +88,35 @@ Real DeviceStepControl::least_step(const Model& model, const Buffer& velocity,
 Real DeviceStepControl::observed_rate(const Model& model, const ProbedMotion& motion) {
   const LiquidModel& liquid = *model.liquids[model.material[0]];
   const Real mass_of_weight = liquid.rest_density / liquid.kernel.scale();
-  for (std::size_t b = 0; b < bodies_; ++b) {
+  std::int32_t result = 0;
+  for (const std::size_t b : bodies_) {
     const ModelBody& body = model.bodies[b];
+    const std::size_t n = body.particles.size();
     const Real scale = mass_of_weight / body.mass;
     for (const std::int32_t is_force : {0, 1}) {
       for (const std::int32_t is_square : {0, 1}) {
-        program_.run("sum_changes", body.particles.size(), first_of(body), count_of(body), is_force,
-                     is_square, motion.position_before, motion.position, motion.acceleration_before,
+        program_.run("sum_changes", n, first_of(body), count_of(body), is_force, is_square,
+                     motion.position_before, motion.position, motion.acceleration_before,
                      motion.acceleration, motion.weight, motion_, partial_);
-        program_.run("end_changes", Program::kGroup, groups_of(body.particles.size()), scale,
-                     is_force, is_square, static_cast<std::int32_t>(b), partial_, motion_,
-                     results_);
+        program_.run("end_changes", Program::kGroup, groups_of(n), scale, is_force, is_square,
+                     result, partial_, motion_, results_);
       }
     }
+    ++result;
   }
   const std::vector<Double2> results = read_results();
   Real greatest = 0;
-  for (std::size_t b = 0; b < bodies_; ++b) {
-    const ModelBody& body = model.bodies[b];
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    const ModelBody& body = model.bodies[bodies_[k]];
     const Real radius = model.radius[body.particles.begin];
-    greatest = std::max(greatest, rate_of_motion(results[b].x * body.mass, results[b].y * body.mass,
+    greatest = std::max(greatest, rate_of_motion(results[k].x * body.mass, results[k].y * body.mass,
                                                  radius, body.mass));
   }
   return greatest;
 }
 
 std::vector<Double2> DeviceStepControl::read_results() {
-  std::vector<Double2> results(bodies_ + 1);
+  std::vector<Double2> results(bodies_.size() + 1);
   program_.read(results_, std::span(results));
   return results;
 }

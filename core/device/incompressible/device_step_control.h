@@ -43,9 +43,9 @@ class DeviceStepControl {
 
   opencl::Program& program_;
   const opencl::Buffer& partial_;
-  const GuardBounds guard_;
-  Real own_step_ = 0;  ///< least of StepBounds [s]
-  const std::size_t bodies_;
+  const Real travel_;                ///< see GuardBounds [m]
+  Real own_step_ = 0;                ///< least of StepBounds [s]
+  std::vector<std::size_t> bodies_;  ///< indices of the liquid bodies
   opencl::Buffer motion_, results_, histogram_;
 };
 

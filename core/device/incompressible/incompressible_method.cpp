@@ -50,9 +50,9 @@ class IncompressibleMethod : public DeviceMethod {
         geometry_(geometry),
         parameters_(solve_parameters(*model_)),
         particles_(program, *model_, geometry),
-        solve_(program, model_->particle_count),
-        now_(program, model_->particle_count),
-        start_(program, model_->particle_count) {
+        solve_(program, *model_),
+        now_(program, model_->liquid_count),
+        start_(program, model_->liquid_count) {
     if (model_->scene.numerics.control == StepControl::adaptive) {
       control_.emplace(program, *model_, solve_.partial);
     }
@@ -71,11 +71,13 @@ class IncompressibleMethod : public DeviceMethod {
   /// Finds the densities of the present positions at `time`.
   void find_density_at(Real time);
   void find_acceleration(const LiquidParameters& p, const Buffer& acceleration);
-  void take_step(const Step& step, AdvanceReport& report);
+  /// Returns whether the state after the step is valid.
+  bool take_step(const Step& step, AdvanceReport& report);
   void project_velocities(const Step& step);
   void correct_density(LiquidParameters p);
-  /// Takes a nominal step in the parts that the step control chooses.
-  void take_varied_step(Real start, Real end, AdvanceReport& report);
+  /// Takes a nominal step in the parts that the step control chooses. Returns whether the state is
+  /// valid after each of them. An invalid state could require very short parts.
+  bool take_varied_step(Real start, Real end, AdvanceReport& report);
   Real find_allowed_step(Real start, AdvanceReport& report);
   /// Returns the rate of motion before the first step, as Stepper::probe_start().
   Real probe_start(Real start, Real dt);
@@ -97,19 +99,20 @@ class IncompressibleMethod : public DeviceMethod {
 };
 
 void IncompressibleMethod::upload(const State& state) {
-  VAT_CHECK(state.now.pressure.size() == model_->particle_count);
+  VAT_CHECK(state.now.pressure.size() == model_->liquid_count);
   now_.motion.write(state.now);
+  particles_.write_solids(state.now);
   program_.write(now_.pressure, std::span<const Real>(state.now.pressure));
   report_ = state.volume;
   history_ = state.history;
 }
 
 void IncompressibleMethod::read(State& state) {
-  const std::size_t n = model_->particle_count;
+  const std::size_t n = model_->liquid_count;
   pressures_.resize(n);
   read_.read(program_, now_.motion, n);
   program_.read(now_.pressure, std::span(pressures_));
-  read_.move_to(state.now);
+  read_.copy_to(state.now);
   state.now.pressure.swap(pressures_);
   state.volume = report_;
   state.history = history_;
@@ -117,7 +120,7 @@ void IncompressibleMethod::read(State& state) {
 
 void IncompressibleMethod::copy(const IncompressibleState& from, IncompressibleState& to) {
   to.motion.copy_from(from.motion);
-  program_.copy(from.pressure, to.pressure, model_->particle_count * sizeof(double));
+  program_.copy(from.pressure, to.pressure, model_->liquid_count * sizeof(double));
 }
 
 template <class... Arguments>
@@ -125,8 +128,8 @@ void IncompressibleMethod::find_density_after(const char* name, const LiquidPara
                                               const Arguments&... own) {
   DeviceParticles& s = particles_;
   s.sort_after(name, p, own...);
-  program_.run("find_density", model_->particle_count, p, s.cell_begins, s.order, now_.pressure,
-               s.sorted_place, s.sorted_motion, s.neighbour_counts, s.neighbours, solve_.density,
+  program_.run("find_density", s.count(), p, s.cell_begins, s.order, now_.pressure, s.sorted_place,
+               s.sorted_motion, s.neighbour_counts, s.neighbours, particles_.density,
                solve_.squares, solve_.partial);
 }
 
@@ -137,15 +140,17 @@ void IncompressibleMethod::find_density_at(Real time) {
 
 void IncompressibleMethod::find_acceleration(const LiquidParameters& p,
                                              const Buffer& acceleration) {
-  const DeviceParticles& s = particles_;
-  program_.run("find_acceleration", model_->particle_count, p, s.cell_begins, s.order,
-               s.sorted_place, s.sorted_motion, s.neighbour_counts, s.neighbours, acceleration);
+  DeviceParticles& s = particles_;
+  s.find_solid_pressure(p);
+  program_.run("find_acceleration", s.count(), p, s.cell_begins, s.order, s.sorted_place,
+               s.sorted_motion, s.neighbour_counts, s.neighbours, acceleration);
 }
 
 void IncompressibleMethod::project_velocities(const Step& step) {
-  const std::size_t n = model_->particle_count;
   LiquidParameters p = geometry_.at(*model_, {step.start, 0, 0, 0, 0});
-  const DeviceParticles& s = particles_;
+  DeviceParticles& s = particles_;
+  const std::size_t n = s.count();
+  s.find_solid_pressure(p);
   SolveParameters solve = parameters_;
   solve.dt = step.length;
   const Vec3 wall_velocity = mean_wall_velocity(*model_, step.start, step.length);
@@ -158,16 +163,16 @@ void IncompressibleMethod::project_velocities(const Step& step) {
   program_.run("kick", n, p, solve, s.cell_begins, s.order, s.sorted_place, s.sorted_motion,
                s.neighbour_counts, s.neighbours, now_.motion.velocity, solve_.solve_motion);
   program_.run("begin_projection", n, p, solve, s.cell_begins, s.order, s.sorted_place,
-               s.neighbour_counts, s.neighbours, solve_.solve_motion, solve_.density,
+               s.neighbour_counts, s.neighbours, solve_.solve_motion, particles_.density,
                solve_.squares, now_.pressure, solve_.x, solve_.excess, solve_.gradient,
                solve_.whole, solve_.partial);
   report_.velocities = solve_.solve(p, solve, s, report_.velocities.iterations);
-  program_.run("end_projection", n, solve.count, solve, solve_.progress, s.order, solve_.density,
-               solve_.x, solve_.whole, now_.pressure, now_.motion.velocity);
+  program_.run("end_projection", n, solve, solve_.progress, s.order, particles_.density, solve_.x,
+               solve_.whole, now_.pressure, now_.motion.velocity);
 }
 
 void IncompressibleMethod::correct_density(LiquidParameters p) {
-  const std::size_t n = model_->particle_count;
+  const std::size_t n = particles_.count();
   const IncompressibleSolve& wanted = model_->scene.incompressible;
   SolveReport& report = report_.places;
   int iterations = 0;
@@ -180,24 +185,25 @@ void IncompressibleMethod::correct_density(LiquidParameters p) {
     SolveParameters solve = parameters_;
     solve.dt = 1;  // shifts take no time
     set_limits(place_limits(wanted, report.mean <= wanted.density_tolerance), solve);
-    program_.run("begin_shift", n, solve, particles_.sorted_place, solve_.density, solve_.squares,
-                 solve_.x, solve_.excess, solve_.gradient, solve_.whole, solve_.partial);
+    program_.run("begin_shift", n, solve, particles_.sorted_place, particles_.density,
+                 solve_.squares, solve_.x, solve_.excess, solve_.gradient, solve_.whole,
+                 solve_.partial);
     shift_iterations_ = solve_.solve(p, solve, particles_, shift_iterations_).iterations;
     iterations += shift_iterations_;
-    program_.run("shift_places", n, solve.count, solve, particles_.order, solve_.whole,
-                 now_.motion.position);
+    program_.run("shift_places", n, solve, particles_.order, solve_.whole, now_.motion.position);
   }
 }
 
-void IncompressibleMethod::take_step(const Step& step, AdvanceReport& report) {
+bool IncompressibleMethod::take_step(const Step& step, AdvanceReport& report) {
   project_velocities(step);
   LiquidParameters p = geometry_.at(*model_, {step.end, 0, 0, step.length, 0});
   p.greatest_speed2 = geometry_.greatest_speed2(step.length);
   correct_density(p);
-  program_.run("check", model_->particle_count, p, now_.motion.position, now_.motion.velocity,
+  program_.run("check", model_->liquid_count, p, now_.motion.position, now_.motion.velocity,
                particles_.counters);
   report.count_evaluation(model_->particle_count);
   report.count_steps(1, step.length, step.length);
+  return particles_.read_counters().faults == 0;
 }
 
 Real IncompressibleMethod::probe_start(Real start, Real dt) {
@@ -231,18 +237,19 @@ Real IncompressibleMethod::find_allowed_step(Real start, AdvanceReport& report) 
   return limit_by_rate(*model_, step, history_.observed_rate);
 }
 
-void IncompressibleMethod::take_varied_step(Real start, Real end, AdvanceReport& report) {
+bool IncompressibleMethod::take_varied_step(Real start, Real end, AdvanceReport& report) {
   const Real nominal = model_->scene.numerics.step;
   for (Real left = nominal; left > 0;) {
     const Real begin = start + (nominal - left);
     const std::uint32_t count =
         choose_step_count(find_allowed_step(begin, report), left, nominal, history_);
     const Real dt = history_.step;
-    take_step({begin, count == 1 ? end : begin + dt, dt}, report);
+    if (!take_step({begin, count == 1 ? end : begin + dt, dt}, report)) return false;
     history_.observed_rate = 0;  // a step has one evaluation
     ++history_.held;
     left = count == 1 ? 0 : left - dt;
   }
+  return true;
 }
 
 bool IncompressibleMethod::take_steps(const EngineInput& input, std::uint32_t steps) {
@@ -258,21 +265,18 @@ bool IncompressibleMethod::take_steps(const EngineInput& input, std::uint32_t st
   const VolumeReport report_before = report_;
   const StepHistory history_before = history_;
   AdvanceReport report = input.report;
-  for (std::uint32_t s = 0; s < steps; ++s) {
-    if (control_) {
-      take_varied_step(time(s), time(s + 1), report);
-    } else {
-      take_step({time(s), time(s + 1), dt}, report);
-    }
+  bool is_sound = true;
+  for (std::uint32_t s = 0; s < steps && is_sound; ++s) {
+    is_sound = control_ ? take_varied_step(time(s), time(s + 1), report)
+                        : take_step({time(s), time(s + 1), dt}, report);
   }
-  const Counters counters = particles_.read_counters();
-  if (counters.faults != 0) {
+  if (!is_sound) {
     copy(start_, now_);
     report_ = report_before;
     history_ = history_before;
     return false;
   }
-  report.wall_stops += static_cast<std::uint64_t>(counters.stops);
+  report.wall_stops += static_cast<std::uint64_t>(particles_.read_counters().stops);
   input.report = std::move(report);
   return true;
 }
@@ -280,9 +284,8 @@ bool IncompressibleMethod::take_steps(const EngineInput& input, std::uint32_t st
 }  // namespace
 
 std::size_t bytes_for_incompressible(const Model& model, const LiquidGeometry& geometry) {
-  const std::size_t n = model.particle_count;
-  return DeviceParticles::bytes_for(model, geometry) + DeviceSolve::bytes_for(n) +
-         DeviceStepControl::bytes_for(model) + 2 * n * IncompressibleState::kBytes;
+  return DeviceParticles::bytes_for(model, geometry) + DeviceSolve::bytes_for(model) +
+         DeviceStepControl::bytes_for(model) + 2 * model.liquid_count * IncompressibleState::kBytes;
 }
 
 std::unique_ptr<DeviceMethod> make_incompressible_method(Program& program,

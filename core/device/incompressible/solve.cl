@@ -1,6 +1,10 @@
 // Solves over the particles of an incompressible liquid, for pressures times dt^2. The names are
 // those of core/liquid/incompressible/complementarity.h and pressure_response.h. All vectors are by
-// slot. Each sum is a fixed tree: first over a group, then over the partial sums of the groups.
+// slot, with zeros for solids. Each sum is a fixed tree: first over a group, then over the partial
+// sums of the groups.
+//
+// For a liquid particle, a solid particle counts as a mirror image of it with twice the weight, see
+// pressure_response.h.
 
 #define GROUP 256
 
@@ -25,6 +29,7 @@ typedef struct {
   double max_expansion;
   int most_iterations;
   int count;
+  int slots;
 } Solve;
 
 // `share`, `slope` and `length` belong to the current iteration.
@@ -77,23 +82,6 @@ double4 sum_partial(local double4* sums, int count, global const double4* partia
   return sum_group(sums, own);
 }
 
-// The direction x from the image in a mirror, seen from the particle that is not reflected.
-float3 turned(uint code, float3 x) {
-  if (code == 0) return x;
-  const Mirror m = mirror_of(code);
-  return (float3)(m.axes[0] > 0 ? -x.x : x.x, m.axes[1] > 0 ? -x.y : x.y,
-                  m.axes[2] > 0 ? -x.z : x.z);
-}
-
-// The vector from a source, or from its image, to a target at n, in support radii.
-float3 way_from(const Parameters* p, uint code, const int* n, int4 source) {
-  if (code == 0) return way_to(p, n, source);
-  const Mirror m = mirror_of(code);
-  int at[3];
-  for (int k = 0; k < 3; ++k) at[k] = reflected(p, &m, n[k], k);
-  return turned(code, way_to(p, at, source));
-}
-
 // D of the motions, divided by rate_factor.
 float rate_of(const Parameters* p, int slot, global const int* begins,
               global const int4* sorted_place, global const int* counts, global const uint* lists,
@@ -108,7 +96,8 @@ float rate_of(const Parameters* p, int slot, global const int* begins,
     const float square = square_of(x);
     if (!(square < 1)) continue;
     const float3 v = mine - turned(code, motions[j].xyz);
-    sum += as_float(other.w) * kernel_slope(sqrt(square)) * (v.x * x.x + v.y * x.y + v.z * x.z);
+    const float weight = is_solid(other) ? 2 * weight_of(other) : weight_of(other);
+    sum += weight * kernel_slope(sqrt(square)) * (v.x * x.x + v.y * x.y + v.z * x.z);
   })
   return sum;
 }
@@ -129,12 +118,13 @@ double4 find_gradient(const Solve* solve, double x, double excess, double diagon
   return (double4)(residual, e * last, e * *gradient, pushes ? fabs(excess) / scale : residual);
 }
 
-// Begins a solve with the initial unknown and excess of a particle.
+// Begins a solve with the initial unknown and excess of a particle. The scale of a solid is 0.
 double4 begin(const Solve* solve, int slot, double first, double excess, double diagonal,
               double scale, global double* x, global double* excesses, global double* gradient,
               global float4* whole) {
-  double g;
-  const double4 sums = find_gradient(solve, first, excess, diagonal, scale, 0, &g);
+  double g = 0;
+  double4 sums = 0;
+  if (scale > 0) sums = find_gradient(solve, first, excess, diagonal, scale, 0, &g);
   x[slot] = first;
   excesses[slot] = excess;
   gradient[slot] = g;
@@ -154,21 +144,27 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void begin_projection(
   local double4 sums[GROUP];
   const int slot = get_global_id(0);
   double4 own = 0;
-  if (slot < solve.count) {
-    const float rate = rate_of(&p, slot, begins, sorted_place, counts, lists, solve_motion);
-    const float weight = as_float(sorted_place[slot].w);
-    const double scale = solve.volume * (double)weight;
-    const double s = density[slot];
-    const double over = s - 1 - solve.left_alone;
-    const double removed = over < 0 ? 0 : over > solve.removal ? solve.removal : over;
-    const double room = s < 1 ? solve.closing * (1 - s) : -removed;
-    double e = scale * (solve.dt * solve.rate_factor * (double)rate - room);
-    double diagonal = diagonal_of(&solve, weight, squares[slot]);
-    double first = pressure[order[slot]] / (s * s);
-    if (!(diagonal > 0)) {
-      diagonal = ALONE;
-      first = 0;
-      if (e > 0) e = 0;
+  if (slot < solve.slots) {
+    double scale = 0;
+    double first = 0;
+    double e = 0;
+    double diagonal = ALONE;
+    if (!is_solid(sorted_place[slot])) {
+      const float rate = rate_of(&p, slot, begins, sorted_place, counts, lists, solve_motion);
+      const float weight = weight_of(sorted_place[slot]);
+      scale = solve.volume * (double)weight;
+      const double s = density[slot];
+      const double over = s - 1 - solve.left_alone;
+      const double removed = over < 0 ? 0 : over > solve.removal ? solve.removal : over;
+      const double room = s < 1 ? solve.closing * (1 - s) : -removed;
+      e = scale * (solve.dt * solve.rate_factor * (double)rate - room);
+      const double bound = diagonal_of(&solve, weight, squares[slot]);
+      if (bound > 0) {
+        diagonal = bound;
+        first = pressure[order[slot]] / (s * s);
+      } else if (e > 0) {
+        e = 0;
+      }
     }
     own = begin(&solve, slot, first, e, diagonal, scale, x, excess, gradient, whole);
   }
@@ -182,14 +178,19 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void begin_shift(
   local double4 sums[GROUP];
   const int slot = get_global_id(0);
   double4 own = 0;
-  if (slot < solve.count) {
-    const float weight = as_float(sorted_place[slot].w);
-    const double scale = solve.volume * (double)weight;
-    const double over = (double)density[slot] - 1;
-    const double e = scale * (solve.max_expansion < over ? solve.max_expansion : over);
-    const double diagonal = diagonal_of(&solve, weight, squares[slot]);
-    own = begin(&solve, slot, 0, e, diagonal > 0 ? diagonal : ALONE, scale, x, excess, gradient,
-                whole);
+  if (slot < solve.slots) {
+    double scale = 0;
+    double e = 0;
+    double diagonal = ALONE;
+    if (!is_solid(sorted_place[slot])) {
+      const float weight = weight_of(sorted_place[slot]);
+      scale = solve.volume * (double)weight;
+      const double over = (double)density[slot] - 1;
+      e = scale * (solve.max_expansion < over ? solve.max_expansion : over);
+      const double bound = diagonal_of(&solve, weight, squares[slot]);
+      if (bound > 0) diagonal = bound;
+    }
+    own = begin(&solve, slot, 0, e, diagonal, scale, x, excess, gradient, whole);
   }
   write_partial(sums, own, partial);
 }
@@ -197,14 +198,14 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void begin_shift(
 // Sets the direction d to g + share d, or to g if `is_restart` is set. Shortens d so that
 // x + longest_step d >= 0. `charge` is d in single precision.
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void follow(
-    const int count, const int is_restart, global const Progress* progress,
+    const int slots, const int is_restart, global const Progress* progress,
     global const double* x, global const double* excess, global const double* gradient,
     global double* direction, global float* charge, global double4* partial) {
   local double4 sums[GROUP];
   if (!progress->is_open || (is_restart && !progress->restarts)) return;
   const int slot = get_global_id(0);
   double4 own = 0;
-  if (slot < count) {
+  if (slot < slots) {
     const double share = is_restart ? 0 : progress->share;
     double d = gradient[slot];
     if (share > 0) d += share * direction[slot];
@@ -235,8 +236,12 @@ kernel void accelerate(const Parameters p, const Solve solve, global const Progr
                        global const int* counts, global const uint* lists,
                        global const float* charge, global float4* solve_motion) {
   const int slot = get_global_id(0);
-  if (slot >= solve.count || !progress->is_open) return;
+  if (slot >= solve.slots || !progress->is_open) return;
   const int4 own = sorted_place[slot];
+  if (is_solid(own)) {
+    solve_motion[slot] = 0;
+    return;
+  }
   const int n[3] = {own.x, own.y, own.z};
   const float mine = charge[slot];
   float3 sum = 0;
@@ -245,7 +250,8 @@ kernel void accelerate(const Parameters p, const Solve solve, global const Progr
     const float3 x = way_from(&p, code, n, other);
     const float square = square_of(x);
     if (!(square < 1)) continue;
-    sum += (mine + charge[j]) * (as_float(other.w) * kernel_slope(sqrt(square))) * x;
+    const float both = is_solid(other) ? 2 * mine : mine + charge[j];
+    sum += both * (weight_of(other) * kernel_slope(sqrt(square))) * x;
   })
   solve_motion[slot] = (float4)(-(float)solve.acceleration_factor * sum, 0);
 }
@@ -260,10 +266,13 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void compress(
   if (!progress->is_open) return;
   const int slot = get_global_id(0);
   double4 own = 0;
-  if (slot < solve.count) {
-    const float rate = rate_of(&p, slot, begins, sorted_place, counts, lists, solve_motion);
-    const double scale = solve.volume * (double)as_float(sorted_place[slot].w);
-    const double a = -solve.dt * solve.dt * solve.rate_factor * scale * (double)rate;
+  if (slot < solve.slots) {
+    double a = 0;
+    if (!is_solid(sorted_place[slot])) {
+      const float rate = rate_of(&p, slot, begins, sorted_place, counts, lists, solve_motion);
+      const double scale = solve.volume * (double)weight_of(sorted_place[slot]);
+      a = -solve.dt * solve.dt * solve.rate_factor * scale * (double)rate;
+    }
     product[slot] = a;
     own.x = direction[slot] * a;
   }
@@ -296,7 +305,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void take_step(
   if (!progress->is_open) return;
   const int slot = get_global_id(0);
   double4 own = 0;
-  if (slot < solve.count) {
+  if (slot < solve.slots && !is_solid(sorted_place[slot])) {
     const double length = progress->length;
     double next = x[slot];
     double e = excess[slot];
@@ -306,7 +315,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void take_step(
       e -= length * product[slot];
       whole[slot] += (float)length * solve_motion[slot];
     }
-    const float weight = as_float(sorted_place[slot].w);
+    const float weight = weight_of(sorted_place[slot]);
     const double diagonal = diagonal_of(&solve, weight, squares[slot]);
     double g;
     own = find_gradient(&solve, next, e, diagonal > 0 ? diagonal : ALONE,

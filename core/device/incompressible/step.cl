@@ -41,8 +41,8 @@ kernel void check(const Parameters p, global const double* position,
 }
 
 // Lists the neighbours of each particle, and computes its relative density s. Computes the squares
-// |sum_j a_j g x|^2 + a sum_j a_j g^2 q^2, with the names of PairSums. Sets the fourth component of
-// sorted_motion to pressure / s^2. `partial` receives the sum and the maximum of the density above
+// |sum_j a_j g x|^2 + a sum_j a_j g^2 q^2, with the names of PairSums. Solids count twice in the first
+// sum, and not in the second one. Sets the fourth component of sorted_motion to pressure / s^2. `partial` receives the sum and the maximum of the density above
 // the rest density.
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_density(
     const Parameters p, global const int* begins, global const int* order,
@@ -52,10 +52,9 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_density(
   local double4 sums[GROUP];
   const int slot = get_global_id(0);
   double4 excess = 0;
-  if (slot < p.count) {
+  if (slot < p.count + p.solids) {
     const int4 own = sorted_place[slot];
     const int n[3] = {own.x, own.y, own.z};
-    const float weight = as_float(own.w);
     float sum = 0;
     float3 gradient = 0;
     float square_sum = 0;
@@ -67,21 +66,27 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_density(
       if (!(square < 1)) continue;
       const float q = sqrt(square);
       const float slope = kernel_slope(q);
-      const float share = as_float(other.w) * slope;
-      sum += as_float(other.w) * kernel_value(q);
-      gradient += share * turned(code, x);
-      square_sum += share * slope * square;
-      if (count < LIST_LENGTH) lists[entry_of(slot, count)] = j | code;
-      ++count;
+      const float share = weight_of(other) * slope;
+      sum += weight_of(other) * kernel_value(q);
+      if (is_solid(other)) {
+        gradient += 2 * share * turned(code, x);
+      } else {
+        gradient += share * turned(code, x);
+        square_sum += share * slope * square;
+      }
+      list(lists, slot, &count, j, code);
     })
-    if (sum > 1) sum -= own_excess(&p, n, weight);
     counts[slot] = count;
-    density[slot] = sum;
-    squares[slot] = square_of(gradient) + weight * square_sum;
-    const double s = sum;
-    sorted_motion[slot].w = (float)(pressure[order[slot]] / (s * s));
-    excess.x = greater(0, s - 1);
-    excess.w = excess.x;
+    if (!is_solid(own)) {
+      const float weight = weight_of(own);
+      if (sum > 1) sum -= own_excess(&p, n, weight);
+      density[slot] = sum;
+      squares[slot] = square_of(gradient) + weight * square_sum;
+      const double s = sum;
+      sorted_motion[slot].w = (float)(pressure[order[slot]] / (s * s));
+      excess.x = greater(0, s - 1);
+      excess.w = excess.x;
+    }
   }
   write_partial(sums, excess, partial);
 }
@@ -94,7 +99,13 @@ kernel void kick(const Parameters p, const Solve solve, global const int* begins
                  global const float4* sorted_motion, global const int* counts,
                  global const uint* lists, global double* velocity, global float4* solve_motion) {
   const int slot = get_global_id(0);
-  if (slot >= p.count) return;
+  if (slot >= solve.slots) return;
+  if (is_solid(sorted_place[slot])) {
+    const float v[3] = {-(float)solve.wall_velocity[0], -(float)solve.wall_velocity[1],
+                        -(float)solve.wall_velocity[2]};
+    solve_motion[slot] = (float4)(v[0], v[1], v[2], 0);
+    return;
+  }
   const float3 a = acceleration_of(&p, slot, begins, sorted_place, sorted_motion, counts, lists);
   const float by[3] = {a.x, a.y, a.z};
   const int i = order[slot];
@@ -108,13 +119,14 @@ kernel void kick(const Parameters p, const Solve solve, global const int* begins
 }
 
 // Ends the solve of the velocities.
-kernel void end_projection(const int count, const Solve solve, global const Progress* progress,
+kernel void end_projection(const Solve solve, global const Progress* progress,
                            global const int* order, global const float* density,
                            global const double* x, global const float4* whole,
                            global double* pressure, global double* velocity) {
   const int slot = get_global_id(0);
-  if (slot >= count || progress->iterations == 0) return;
+  if (slot >= solve.slots || progress->iterations == 0) return;
   const int i = order[slot];
+  if (i >= solve.count) return;
   const double s = density[slot];
   pressure[i] = x[slot] * s * s;
   const float4 a = whole[slot];
@@ -123,11 +135,12 @@ kernel void end_projection(const int count, const Solve solve, global const Prog
 }
 
 // Ends the solve of the positions.
-kernel void shift_places(const int count, const Solve solve, global const int* order,
+kernel void shift_places(const Solve solve, global const int* order,
                          global const float4* whole, global double* position) {
   const int slot = get_global_id(0);
-  if (slot >= count) return;
+  if (slot >= solve.slots) return;
   const int i = order[slot];
+  if (i >= solve.count) return;
   const float4 a = whole[slot];
   const float by[3] = {a.x, a.y, a.z};
   for (int k = 0; k < 3; ++k) position[3 * i + k] += solve.dt * solve.dt * (double)by[k];

@@ -1,5 +1,7 @@
 #include "core/device/liquid/device_motion.h"
 
+#include <algorithm>
+
 #include "core/support/check.h"
 
 namespace vat {
@@ -15,9 +17,9 @@ DeviceMotion::DeviceMotion(Program& program, std::size_t particles)
 }
 
 void DeviceMotion::write(const Configuration& from) {
-  VAT_CHECK(from.position.size() == count_ && from.velocity.size() == count_);
-  program_.write(position, std::span(from.position));
-  program_.write(velocity, std::span(from.velocity));
+  VAT_CHECK(from.position.size() >= count_ && from.velocity.size() >= count_);
+  program_.write(position, std::span(from.position).first(count_));
+  program_.write(velocity, std::span(from.velocity).first(count_));
 }
 
 void DeviceMotion::copy_from(const DeviceMotion& other) {
@@ -33,9 +35,10 @@ void ReadMotion::read(Program& program, const DeviceMotion& from, std::size_t pa
   program.read(from.velocity, std::span(velocities_));
 }
 
-void ReadMotion::move_to(Configuration& to) {
-  to.position.swap(positions_);
-  to.velocity.swap(velocities_);
+void ReadMotion::copy_to(Configuration& to) const {
+  VAT_CHECK(to.position.size() >= positions_.size() && to.velocity.size() >= velocities_.size());
+  std::ranges::copy(positions_, to.position.begin());
+  std::ranges::copy(velocities_, to.velocity.begin());
 }
 
 }  // namespace vat

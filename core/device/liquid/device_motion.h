@@ -7,7 +7,7 @@
 
 namespace vat {
 
-/// Positions and velocities of particles on a device, in the order of the particles. The functions
+/// Positions and velocities of a liquid on a device, in the order of the particles. The functions
 /// throw opencl::DeviceFailure.
 class DeviceMotion {
  public:
@@ -16,6 +16,7 @@ class DeviceMotion {
   /// Returns the bytes of a particle.
   static constexpr std::size_t kBytes = 6 * sizeof(double);
 
+  /// Writes the motion of the first particles of `from`.
   void write(const Configuration& from);
   void copy_from(const DeviceMotion& other);
 
@@ -31,8 +32,8 @@ class DeviceMotion {
 class ReadMotion {
  public:
   void read(opencl::Program& program, const DeviceMotion& from, std::size_t particles);
-  /// Moves the copy to `to`.
-  void move_to(Configuration& to);
+  /// Writes the copy to the first particles of `to`.
+  void copy_to(Configuration& to) const;
 
  private:
   std::vector<Vec3> positions_;

@@ -1,5 +1,7 @@
 #include "core/device/liquid/device_particles.h"
 
+#include "core/support/check.h"
+
 namespace vat {
 namespace {
 
@@ -27,11 +29,13 @@ DeviceParticles::DeviceParticles(Program& program, const Model& model,
     : order(program, model.particle_count * kNumber),
       sorted_place(program, model.particle_count * sizeof(Float4)),
       sorted_motion(program, model.particle_count * sizeof(Float4)),
+      density(program, model.particle_count * sizeof(float)),
       neighbour_counts(program, model.particle_count * kNumber),
       neighbours(program, list_entries(model.particle_count) * kNumber),
       cell_begins(program, (geometry.cell_count() + 1) * kNumber),
       counters(program, sizeof(Counters)),
       program_(program),
+      liquid_count_(model.liquid_count),
       count_(model.particle_count),
       cells_(geometry.cell_count()),
       weight_(program, count_ * sizeof(float)),
@@ -44,14 +48,19 @@ DeviceParticles::DeviceParticles(Program& program, const Model& model,
       block_sums_(program, scan_blocks(cells_) * kNumber) {
   const Real scale = model.liquids[model.material[0]]->kernel.scale();
   std::vector<float> weights;
-  for (const Real volume : model.rest_volume) {
-    weights.push_back(static_cast<float>(volume * scale));
+  for (std::size_t i = 0; i < count_; ++i) {
+    const auto weight = static_cast<float>(model.rest_volume[i] * scale);
+    weights.push_back(i < liquid_count_ ? weight : -weight);
+  }
+  if (count_ > liquid_count_) {
+    solid_position_ = opencl::Buffer(program, (count_ - liquid_count_) * sizeof(Vec3));
   }
   program_.write(weight_, std::span<const float>(weights));
 }
 
 std::size_t DeviceParticles::bytes_for(const Model& model, const LiquidGeometry& geometry) {
-  return model.particle_count * (4 * sizeof(Float4) + 6 * kNumber) +
+  const std::size_t solids = model.particle_count - model.liquid_count;
+  return model.particle_count * (4 * sizeof(Float4) + 7 * kNumber) + solids * sizeof(Vec3) +
          list_entries(model.particle_count) * kNumber + geometry.cell_count() * 2 * kNumber;
 }
 
@@ -66,6 +75,18 @@ void DeviceParticles::sort() {
   program_.run("scatter", count_, count, cell_of_, rank_, cell_begins, unsorted_);
   program_.run("collect", count_, count, cell_of_, cell_begins, unsorted_, place_, motion_, order,
                sorted_place, sorted_motion);
+}
+
+void DeviceParticles::write_solids(const Configuration& from) {
+  VAT_CHECK(from.position.size() == count_);
+  if (count_ == liquid_count_) return;
+  program_.write(solid_position_, std::span(from.position).subspan(liquid_count_));
+}
+
+void DeviceParticles::find_solid_pressure(const LiquidParameters& p) {
+  if (count_ == liquid_count_) return;
+  program_.run("find_solid_pressure", count_, p, cell_begins, sorted_place, sorted_motion, density,
+               neighbour_counts, neighbours);
 }
 
 void DeviceParticles::clear_counters() {

@@ -7,6 +7,7 @@
 #include "core/device/liquid/liquid_geometry.h"
 #include "core/device/opencl/program.h"
 #include "core/model/model.h"
+#include "core/state/state.h"
 
 namespace vat {
 
@@ -21,8 +22,8 @@ struct Counters {
   std::int32_t stops = 0;
 };
 
-/// The particles of a liquid on a device, in the order of their cells, and their neighbours. The
-/// functions throw opencl::DeviceFailure.
+/// The particles of a liquid and of the solids at rest in it, on a device. They are in the order of
+/// their cells, with lists of their neighbours. The functions throw opencl::DeviceFailure.
 class DeviceParticles {
  public:
   /// Allocates the buffers for a model, and writes the weights of the particles.
@@ -31,15 +32,28 @@ class DeviceParticles {
   /// Returns the bytes of the buffers on the device.
   static std::size_t bytes_for(const Model& model, const LiquidGeometry& geometry);
 
-  /// Runs the kernel `name`, which enters the particles into their cells. Then sorts the particles.
-  /// The arguments of the kernel are `own` and the buffers of enter_cell().
+  /// Writes the positions of the solids.
+  void write_solids(const Configuration& from);
+
+  /// Runs the kernel `name`, which enters the liquid particles into their cells. Then enters the
+  /// solids, and sorts all particles. The arguments of the kernel are `own` and the buffers of
+  /// enter_cell().
   template <class... Arguments>
-  void sort_after(const char* name, const Arguments&... own) {
+  void sort_after(const char* name, const LiquidParameters& p, const Arguments&... own) {
     program_.fill_with_zeros(cell_counts_, cells_ * sizeof(std::int32_t));
-    program_.run(name, count_, own..., weight_, place_, motion_, cell_of_, rank_, cell_counts_,
-                 counters);
+    program_.run(name, liquid_count_, p, own..., weight_, place_, motion_, cell_of_, rank_,
+                 cell_counts_, counters);
+    if (count_ > liquid_count_) {
+      program_.run("enter_solids", count_ - liquid_count_, p, solid_position_, weight_, place_,
+                   motion_, cell_of_, rank_, cell_counts_, counters);
+    }
     sort();
   }
+  /// Extrapolates the pressure to the solids, if there are any.
+  void find_solid_pressure(const LiquidParameters& p);
+
+  /// Returns the number of liquid and solid particles.
+  std::size_t count() const { return count_; }
 
   /// Resets the counters.
   void clear_counters();
@@ -52,6 +66,7 @@ class DeviceParticles {
   opencl::Buffer order;
   opencl::Buffer sorted_place;
   opencl::Buffer sorted_motion;
+  opencl::Buffer density;  ///< relative to the density at rest
   opencl::Buffer neighbour_counts;
   opencl::Buffer neighbours;
   opencl::Buffer cell_begins;
@@ -61,10 +76,12 @@ class DeviceParticles {
   void sort();
 
   opencl::Program& program_;
+  const std::size_t liquid_count_;
   const std::size_t count_;
   const std::size_t cells_;
   opencl::Buffer weight_, place_, motion_, cell_of_, rank_;  // in the order of particles
   opencl::Buffer unsorted_, cell_counts_, block_sums_;
+  opencl::Buffer solid_position_;  ///< only with solids
 };
 
 }  // namespace vat

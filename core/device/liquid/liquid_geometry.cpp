@@ -88,12 +88,12 @@ void LiquidGeometry::set_grid(const Model& model) {
 }
 
 LiquidGeometry::LiquidGeometry(const Model& model, const GuardBounds& bounds) {
-  VAT_CHECK(model.liquid_count == model.particle_count && model.liquid_count > 0);
+  VAT_CHECK(model.liquid_count == model.free_count && model.liquid_count > 0);
   set_grid(model);
   const LiquidModel& liquid = *model.liquids[model.material[0]];
   store(bounds.min, constant_.domain_low);
   store(bounds.max, constant_.domain_high);
-  travel_ = *std::ranges::min_element(bounds.travel);
+  travel_ = bounds.travel[model.body[0]];
   constant_.greatest_speed2 = greatest_speed2(model.scene.numerics.step);
   constant_.density = static_cast<float>(liquid.rest_density);
   constant_.stiffness = static_cast<float>(liquid.rest_density * liquid.stiffness);
@@ -104,7 +104,8 @@ LiquidGeometry::LiquidGeometry(const Model& model, const GuardBounds& bounds) {
   for (const int wall : model.no_slip_walls) constant_.no_slip |= 1 << wall;
   constant_.is_thick = is_thick(liquid, model.scene.dimensions) ? 1 : 0;
   constant_.bounces = model.is_incompressible ? 0 : 1;
-  constant_.count = static_cast<std::int32_t>(model.particle_count);
+  constant_.count = static_cast<std::int32_t>(model.liquid_count);
+  constant_.solids = static_cast<std::int32_t>(model.particle_count - model.liquid_count);
 }
 
 LiquidParameters LiquidGeometry::at(const Model& model, const StepMoment& moment) const {

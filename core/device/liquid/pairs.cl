@@ -138,10 +138,33 @@ Mirror mirror_of(uint code) {
     FOR_EACH_CANDIDATE(p, n, begins, BODY)                                     \
   }
 
+// Adds a source to a list.
+void list(global uint* lists, int slot, int* count, int source, uint code) {
+  if (*count < LIST_LENGTH) lists[entry_of(slot, *count)] = source | code;
+  ++*count;
+}
+
 // The vector from a source to a target, or to its image at `at`, in support radii.
 float3 way_to(const Parameters* p, const int* at, int4 source) {
   return (float3)((float)(at[0] - source.x), (float)(at[1] - source.y), (float)(at[2] - source.z)) *
          p->in_supports;
+}
+
+// The direction x from the image in a mirror, seen from the particle that is not reflected.
+float3 turned(uint code, float3 x) {
+  if (code == 0) return x;
+  const Mirror m = mirror_of(code);
+  return (float3)(m.axes[0] > 0 ? -x.x : x.x, m.axes[1] > 0 ? -x.y : x.y,
+                  m.axes[2] > 0 ? -x.z : x.z);
+}
+
+// The vector from a source, or from its image, to a target at n, in support radii.
+float3 way_from(const Parameters* p, uint code, const int* n, int4 source) {
+  if (code == 0) return way_to(p, n, source);
+  const Mirror m = mirror_of(code);
+  int at[3];
+  for (int k = 0; k < 3; ++k) at[k] = reflected(p, &m, n[k], k);
+  return turned(code, way_to(p, at, source));
 }
 
 float square_of(float3 x) {
@@ -171,7 +194,7 @@ void add_force(const Parameters* p, const int* n, float4 mine, int4 source, floa
   if (!(square < 1)) return;
   const float approach = (mine.x - its.x) * x.x + (mine.y - its.y) * x.y + (mine.z - its.z) * x.z;
   const float force = p->viscosity * approach / (square + SOFTENING) - (mine.w + its.w);
-  const float share = force * (as_float(source.w) * kernel_slope(sqrt(square)));
+  const float share = force * (weight_of(source) * kernel_slope(sqrt(square)));
   sum[0] += share * x.x;
   sum[1] += share * x.y;
   sum[2] += share * x.z;
@@ -208,14 +231,14 @@ void add_force_of_image(const Parameters* p, const Mirror* m, const int* n, floa
   const float square = square_of(x);
   if (!(square < 1)) return;
   const float force = -(mine.w + image_pressure(p, m, source, its.w));
-  const float share = force * (as_float(source.w) * kernel_slope(sqrt(square)));
+  const float share = force * (weight_of(source) * kernel_slope(sqrt(square)));
   sum[0] += share * (m->axes[0] > 0 ? -x.x : x.x);
   sum[1] += share * (m->axes[1] > 0 ? -x.y : x.y);
   sum[2] += share * (m->axes[2] > 0 ? -x.z : x.z);
-  if (!is_viscous(p, m)) return;
+  if (is_solid(source) || !is_viscous(p, m)) return;
   const float3 v = mirrored_velocity(p, m, its);
   const float drag = p->viscosity / (square + SOFTENING) *
-                     (as_float(source.w) * kernel_slope(sqrt(square)));
+                     (weight_of(source) * kernel_slope(sqrt(square)));
   sum[0] += drag * (x.x * x.x) * (mine.x - v.x);
   sum[1] += drag * (x.y * x.y) * (mine.y - v.y);
   sum[2] += drag * (x.z * x.z) * (mine.z - v.z);
@@ -251,13 +274,49 @@ float3 acceleration_of(const Parameters* p, int slot, global const int* begins,
   return (float3)(a[0], a[1], a[2]);
 }
 
+// Extrapolates the pressure of the surrounding liquid to solids, see extrapolate_pressure().
+// p.gravity is the gravity on the liquid.
+kernel void find_solid_pressure(const Parameters p, global const int* begins,
+                                global const int4* sorted_place, global float4* sorted_motion,
+                                global const float* density, global const int* counts,
+                                global const uint* lists) {
+  const int slot = get_global_id(0);
+  if (slot >= p.count + p.solids) return;
+  const int4 own = sorted_place[slot];
+  if (!is_solid(own)) return;
+  const int n[3] = {own.x, own.y, own.z};
+  float weights = 0;
+  float pressures = 0;
+  float3 arms = 0;
+  FOR_EACH_NEIGHBOUR(&p, slot, n, begins, counts, lists, {
+    const int4 source = sorted_place[j];
+    if (is_solid(source)) continue;
+    const float3 x = way_from(&p, code, n, source);
+    const float square = square_of(x);
+    if (!(square < 1)) continue;
+    const float weight = weight_of(source) * kernel_value(sqrt(square));
+    const float s = density[j];
+    float pressure = sorted_motion[j].w * (s * s);
+    if (code != 0) {
+      const Mirror m = mirror_of(code);
+      pressure = image_pressure(&p, &m, source, pressure);
+    }
+    weights += weight;
+    pressures += weight * pressure;
+    arms += weight * x;
+  })
+  const float fall = p.gravity[0] * arms.x + p.gravity[1] * arms.y + p.gravity[2] * arms.z;
+  const float sum = pressures + p.density * (fall * (p.unit / p.in_supports));
+  sorted_motion[slot].w = weights > 0 ? max(0.0f, sum / weights) : 0;
+}
+
 // The accelerations in the order of particles.
 kernel void find_acceleration(const Parameters p, global const int* begins,
                               global const int* order, global const int4* sorted_place,
                               global const float4* sorted_motion, global const int* counts,
                               global const uint* lists, global float4* acceleration) {
   const int slot = get_global_id(0);
-  if (slot >= p.count) return;
+  if (slot >= p.count + p.solids || is_solid(sorted_place[slot])) return;
   const float3 a = acceleration_of(&p, slot, begins, sorted_place, sorted_motion, counts, lists);
   acceleration[order[slot]] = (float4)(a, 0);
 }

@@ -1,5 +1,5 @@
-// Particles of one liquid in a vat: parameters, walls, and integer positions. One work-item computes
-// one particle.
+// Particles of one liquid, and of solids at rest in it, in a vat: parameters, walls, and integer
+// positions. One work-item computes one particle. Solids follow the liquid in the order of particles.
 //
 // Positions and velocities are in double precision, in the order of the particles. Sums over pairs
 // are in single precision. They read copies in the order of cells, whose positions are integers:
@@ -47,6 +47,7 @@ typedef struct {
   int is_thick;
   int bounces;
   int count;
+  int solids;
 } Parameters;
 
 enum { kFault = 0, kStops = 1 };
@@ -92,6 +93,15 @@ bool reflect_at_walls(const Parameters* p, double* x, double* v) {
   return is_stopped;
 }
 
+// The weight of a source is its rest volume times the scale of the kernel. It is stored with a
+// negative sign for solids.
+bool is_solid(int4 place) {
+  return as_float(place.w) < 0;
+}
+float weight_of(int4 place) {
+  return fabs(as_float(place.w));
+}
+
 // Adds a particle with the velocity w to its cell.
 void enter_cell(const Parameters* p, int i, const double* x, const float* w,
                 global const float* weight, global int4* place, global float4* motion,
@@ -112,4 +122,17 @@ void enter_cell(const Parameters* p, int i, const double* x, const float* w,
   const int cell = (c[2] * p->cells[1] + c[1]) * p->cells[0] + c[0];
   cell_of[i] = cell;
   rank[i] = atomic_inc(cell_counts + cell);
+}
+
+// Enters the solids into their cells.
+kernel void enter_solids(const Parameters p, global const double* solid_position,
+                         global const float* weight, global int4* place, global float4* motion,
+                         global int* cell_of, global int* rank, global int* cell_counts,
+                         global int* status) {
+  const int b = get_global_id(0);
+  if (b >= p.solids) return;
+  double x[3];
+  for (int k = 0; k < 3; ++k) x[k] = solid_position[3 * b + k];
+  const float w[3] = {0, 0, 0};
+  enter_cell(&p, p.count + b, x, w, weight, place, motion, cell_of, rank, cell_counts, status);
 }

@@ -64,12 +64,12 @@ float tait_pressure(float s) {
 }
 
 // Lists the neighbours of each particle. Sets the fourth component of sorted_motion to pressure /
-// s^2 for the relative density s.
+// s^2 for the relative density s of the liquid.
 kernel void find_pressure(const Parameters p, global const int* begins,
                           global const int4* sorted_place, global float4* sorted_motion,
-                          global int* counts, global uint* lists) {
+                          global float* density, global int* counts, global uint* lists) {
   const int slot = get_global_id(0);
-  if (slot >= p.count) return;
+  if (slot >= p.count + p.solids) return;
   const int4 own = sorted_place[slot];
   const int n[3] = {own.x, own.y, own.z};
   float sum = 0;
@@ -78,11 +78,12 @@ kernel void find_pressure(const Parameters p, global const int* begins,
     const int4 other = sorted_place[j];
     const float square = square_of(way_to(&p, at, other));
     if (!(square < 1)) continue;
-    sum += as_float(other.w) * kernel_value(sqrt(square));
-    if (count < LIST_LENGTH) lists[entry_of(slot, count)] = j | code;
-    ++count;
+    sum += weight_of(other) * kernel_value(sqrt(square));
+    list(lists, slot, &count, j, code);
   })
-  if (sum > 1) sum -= own_excess(&p, n, as_float(own.w));
-  sorted_motion[slot].w = max(0.0f, p.stiffness * tait_pressure(sum)) / (sum * sum);
   counts[slot] = count;
+  if (is_solid(own)) return;
+  if (sum > 1) sum -= own_excess(&p, n, as_float(own.w));
+  density[slot] = sum;
+  sorted_motion[slot].w = max(0.0f, p.stiffness * tait_pressure(sum)) / (sum * sum);
 }

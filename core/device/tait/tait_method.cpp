@@ -30,8 +30,8 @@ class TaitMethod : public DeviceMethod {
         model_(std::move(model)),
         geometry_(geometry),
         particles_(program, *model_, geometry),
-        now_(program, model_->particle_count),
-        start_(program, model_->particle_count) {}
+        now_(program, model_->liquid_count),
+        start_(program, model_->liquid_count) {}
 
   bool take_steps(const EngineInput& input, std::uint32_t steps) override;
   void read(State& state) override;
@@ -52,8 +52,9 @@ class TaitMethod : public DeviceMethod {
 };
 
 void TaitMethod::upload(const State& state) {
-  const std::size_t n = model_->particle_count;
+  const std::size_t n = model_->liquid_count;
   now_.motion.write(state.now);
+  particles_.write_solids(state.now);
   accelerations_.assign(n, {});
   if (state.forces_current) {
     for (std::size_t i = 0; i < n; ++i) {
@@ -66,12 +67,15 @@ void TaitMethod::upload(const State& state) {
 }
 
 void TaitMethod::read(State& state) {
-  const std::size_t n = model_->particle_count;
+  const std::size_t n = model_->liquid_count;
   accelerations_.resize(n);
   read_.read(program_, now_.motion, n);
   program_.read(now_.acceleration, std::span<Float4>(accelerations_));
-  read_.move_to(state.now);
-  state.forces.particle.resize(n);
+  read_.copy_to(state.now);
+  // No force acts on the solids, which are held.
+  state.forces.particle.assign(model_->particle_count, Vec3::Zero());
+  state.forces.rigid_force.assign(model_->rigid_bodies.size(), Vec3::Zero());
+  state.forces.rigid_torque.assign(model_->rigid_bodies.size(), Vec3::Zero());
   for (std::size_t i = 0; i < n; ++i) {
     const Float4& a = accelerations_[i];
     state.forces.particle[i] =
@@ -84,18 +88,18 @@ void TaitMethod::read(State& state) {
 
 void TaitMethod::copy(const TaitState& from, TaitState& to) {
   to.motion.copy_from(from.motion);
-  program_.copy(from.acceleration, to.acceleration, model_->particle_count * sizeof(Float4));
+  program_.copy(from.acceleration, to.acceleration, model_->liquid_count * sizeof(Float4));
 }
 
 /// Moves the particles, and computes their accelerations at the new positions.
 void TaitMethod::evaluate(const LiquidParameters& p) {
-  const std::size_t n = model_->particle_count;
   DeviceParticles& s = particles_;
   s.sort_after("move", p, now_.motion.position, now_.motion.velocity, now_.acceleration);
-  program_.run("find_pressure", n, p, s.cell_begins, s.sorted_place, s.sorted_motion,
-               s.neighbour_counts, s.neighbours);
-  program_.run("find_acceleration", n, p, s.cell_begins, s.order, s.sorted_place, s.sorted_motion,
-               s.neighbour_counts, s.neighbours, now_.acceleration);
+  program_.run("find_pressure", s.count(), p, s.cell_begins, s.sorted_place, s.sorted_motion,
+               s.density, s.neighbour_counts, s.neighbours);
+  s.find_solid_pressure(p);
+  program_.run("find_acceleration", s.count(), p, s.cell_begins, s.order, s.sorted_place,
+               s.sorted_motion, s.neighbour_counts, s.neighbours, now_.acceleration);
 }
 
 bool TaitMethod::take_steps(const EngineInput& input, std::uint32_t steps) {
@@ -116,8 +120,8 @@ bool TaitMethod::take_steps(const EngineInput& input, std::uint32_t steps) {
     evaluate(geometry_.at(*model_, moment));
     moment.closing = dt / 2;
   }
-  program_.run("finish", model_->particle_count, geometry_.at(*model_, moment),
-               now_.motion.position, now_.motion.velocity, now_.acceleration, particles_.counters);
+  program_.run("finish", model_->liquid_count, geometry_.at(*model_, moment), now_.motion.position,
+               now_.motion.velocity, now_.acceleration, particles_.counters);
   const Counters counters = particles_.read_counters();
   if (counters.faults != 0) {
     copy(start_, now_);
@@ -133,7 +137,7 @@ bool TaitMethod::take_steps(const EngineInput& input, std::uint32_t steps) {
 }  // namespace
 
 std::size_t bytes_for_tait(const Model& model, const LiquidGeometry& geometry) {
-  return DeviceParticles::bytes_for(model, geometry) + 2 * model.particle_count * TaitState::kBytes;
+  return DeviceParticles::bytes_for(model, geometry) + 2 * model.liquid_count * TaitState::kBytes;
 }
 
 std::unique_ptr<DeviceMethod> make_tait_method(Program& program, std::shared_ptr<const Model> model,

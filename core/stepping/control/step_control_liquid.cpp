@@ -51,9 +51,8 @@ std::size_t lasting_rank(std::size_t count) {
   return count - 1 - (count - 1) / kRare;
 }
 
-Real step_of_particles(Real own_step, const GuardBounds& guard, Real speed) {
-  VAT_CHECK(!guard.travel.empty());
-  return std::min(own_step, travel_time(kTravelShare * std::ranges::min(guard.travel), speed, 0));
+Real step_of_particles(Real own_step, Real travel, Real speed) {
+  return std::min(own_step, travel_time(kTravelShare * travel, speed, 0));
 }
 
 }  // namespace vat

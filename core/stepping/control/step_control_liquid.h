@@ -1,6 +1,5 @@
 #pragma once
 
-#include "core/guard/guard.h"
 #include "core/stepping/control/step_control_contacts.h"
 
 /// The step lengths that the motion of liquids allows; see find_present_steps().
@@ -33,7 +32,8 @@ Real step_of_liquid(const Model& model, std::size_t body, const LiquidMotion& mo
 std::size_t lasting_rank(std::size_t count);
 
 /// Returns the least of PresentSteps::particle for particles without known accelerations, of which
-/// the fastest one has this speed [m/s]. `own_step` is the least of StepBounds.
-Real step_of_particles(Real own_step, const GuardBounds& guard, Real speed);
+/// the fastest one has this speed [m/s]. `own_step` is the least of StepBounds [s], and `travel` is
+/// that of GuardBounds [m].
+Real step_of_particles(Real own_step, Real travel, Real speed);
 
 }  // namespace vat

@@ -142,6 +142,37 @@ TEST(IncompressibleDevice, CarriesTheWeightOfTheLiquid) {
   EXPECT_LT(std::sqrt(error2 / scale2), 0.06);
 }
 
+// The force on a fixed ball in a liquid at rest is the weight of the displaced liquid. The
+// tolerance is that of case INT-5.
+TEST(IncompressibleDevice, LiftsAFixedBodyByTheWeightOfTheDisplacedLiquid) {
+  constexpr Real kRadius = 4 * kSpacing;
+  const Vec3 center(0.16, 0, 0.14);
+  Scene scene = make_column();
+  scene.dimensions = 2;
+  scene.numerics.step = scene.numerics.tick = 2.5e-3;
+  scene.settling = Settling{20, 0.4};
+  scene.materials.push_back(make_material("stone", 2000));
+  scene.vat = Vat{{0, -1, 0}, {0.32, 1, 0.6}, false, {}};
+  std::vector<Vec3> points;
+  for (const Vec3& point : make_lattice(16, 1, 15, kSpacing)) {
+    const Vec3 p = point + Vec3(0.16, 0, 0.15);
+    if ((p - center).norm() > kRadius + kSpacing / 4) points.push_back(p);
+  }
+  scene.bodies = {make_fixed("disc", SphereShape{center, kRadius}, kSpacing),
+                  make_body("water", BodyKind::liquid, "water",
+                            make_particles(points, 1000 * kSpacing * kSpacing), kSpacing / 2)};
+  Simulation device = make_on_device(scene);
+  EXPECT_EQ(device.advance(180).device_steps, 180U);
+  Real lift = 0;
+  constexpr int kSamples = 20;
+  for (int sample = 0; sample < kSamples; ++sample) {
+    EXPECT_EQ(device.advance(4).device_steps, 4U);
+    lift += device.diagnostics().bodies[0].outer_force.z() / kSamples;
+  }
+  const Real area = device.diagnostics().bodies[0].mass / 2000;
+  EXPECT_NEAR(lift / (1000 * kGravity * area), 1, 0.05);
+}
+
 TEST(IncompressibleDevice, KeepsTheDensityWithinItsTolerance) {
   constexpr Real kRounding = 40 * 6e-8;  // of a sum over a neighbourhood
   for (const bool is_adaptive : {false, true}) {

@@ -49,6 +49,13 @@ inline Real difference(const Simulation& a, const Simulation& b) {
   return greatest;
 }
 
+/// Returns a fixed rigid body of the material "stone".
+inline BodyDescription make_fixed(const std::string& name, const Shape& shape, Real spacing) {
+  BodyDescription body{name, BodyKind::rigid, "stone", shape, spacing};
+  body.fixed = true;
+  return body;
+}
+
 /// Changes of a scene with a vat and a box of liquid as its first body, for any solver.
 inline const SceneCase kCommonScenes[] = {
     {"unchanged", [](Scene&) {}},
@@ -71,6 +78,14 @@ inline const SceneCase kCommonScenes[] = {
     {"settling",
      [](Scene& scene) {
        scene.settling = Settling{20, 0.015};
+     }},
+    {"fixed bodies in a sliding vat",
+     [](Scene& scene) {
+       scene.materials.push_back(make_material("stone", 2000));
+       scene.bodies.push_back(make_fixed("ball", SphereShape{{0.19, 0.03, 0.03}, 0.025}, 0.01));
+       scene.bodies.push_back(
+           make_fixed("step", BoxShape{{0.22, 0.09, 0.03}, {0.1, 0.06, 0.06}}, 0.02));
+       scene.vat->motion = SlideMotion{Vec3(1, 0, 0), 0.1, 0.2};
      }},
     {"two bodies",
      [](Scene& scene) {

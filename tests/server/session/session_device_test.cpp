@@ -130,14 +130,17 @@ TEST_F(SessionDevice, ScenesWithOtherFeaturesAreRejected) {
   step(1);
   const std::string before = hash();
   Json scene = kColumn;
-  scene["bodies"].push_back(kBall);
+  for (const char* name : {"ball", "second ball"}) {
+    scene["bodies"].push_back(kBall);
+    scene["bodies"].back()["name"] = name;
+  }
   for (const char* method : {"session.create", "scene.load"}) {
     SCOPED_TRACE(method);
     Json params{{"scene", scene}};
     if (method == std::string("session.create")) params["name"] = "other";
     const Json error = client().error(method, params);
     EXPECT_EQ(error.at("data").at("kind"), "invalid_params");
-    EXPECT_THAT(paths_of(error), ElementsAre("/scene/bodies/1/kind", "/scene/bodies/1/material"));
+    EXPECT_THAT(paths_of(error), ElementsAre("/scene/bodies/1/kind", "/scene/bodies/2/kind"));
   }
   EXPECT_EQ(hash(), before);
   EXPECT_EQ(device(), "opencl:0");
