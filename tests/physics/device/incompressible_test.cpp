@@ -263,6 +263,11 @@ TEST(IncompressibleDevice, HasTheSameBitsOnEveryDeviceIfExact) {
   Simulation fixed = make_on_device(make_column());
   EXPECT_EQ(fixed.advance(60).device_steps, 60U);
   EXPECT_EQ(fixed.state_hash(), 0x5aa97095959dd31U);
+  Scene with_solids = make_column();
+  add_fixed_bodies(with_solids);
+  Simulation wet = make_on_device(with_solids);
+  EXPECT_EQ(wet.advance(30).device_steps, 30U);
+  EXPECT_EQ(wet.state_hash(), 0x2a717da78eb38178U);
   Simulation adaptive = make_on_device(make_adaptive());
   EXPECT_EQ(adaptive.advance(12).device_steps, 12U);
   EXPECT_EQ(adaptive.state_hash(), 0x14f184705484cb72U);

@@ -56,6 +56,13 @@ inline BodyDescription make_fixed(const std::string& name, const Shape& shape, R
   return body;
 }
 
+/// Adds a ball and a step beside the box of liquid, near a wall and the floor.
+inline void add_fixed_bodies(Scene& scene) {
+  scene.materials.push_back(make_material("stone", 2000));
+  scene.bodies.push_back(make_fixed("ball", SphereShape{{0.19, 0.03, 0.03}, 0.025}, 0.01));
+  scene.bodies.push_back(make_fixed("step", BoxShape{{0.22, 0.09, 0.03}, {0.1, 0.06, 0.06}}, 0.02));
+}
+
 /// Changes of a scene with a vat and a box of liquid as its first body, for any solver.
 inline const SceneCase kCommonScenes[] = {
     {"unchanged", [](Scene&) {}},
@@ -81,10 +88,7 @@ inline const SceneCase kCommonScenes[] = {
      }},
     {"fixed bodies in a sliding vat",
      [](Scene& scene) {
-       scene.materials.push_back(make_material("stone", 2000));
-       scene.bodies.push_back(make_fixed("ball", SphereShape{{0.19, 0.03, 0.03}, 0.025}, 0.01));
-       scene.bodies.push_back(
-           make_fixed("step", BoxShape{{0.22, 0.09, 0.03}, {0.1, 0.06, 0.06}}, 0.02));
+       add_fixed_bodies(scene);
        scene.vat->motion = SlideMotion{Vec3(1, 0, 0), 0.1, 0.2};
      }},
     {"two bodies",
