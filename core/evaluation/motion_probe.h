@@ -35,9 +35,10 @@ class MotionProbe {
   std::vector<Vec3> last_force_;
 };
 
-/// Returns omega of one body [rad/s] from sum m |change of position|^2 [kg m^2] and sum m |change
-/// of acceleration|^2 [kg m^2/s^4], both relative to the mean of the body. Returns 0 if `way2` is
-/// rounding for particles of this radius [m].
+/// Returns omega of one body [rad/s]. Both sums are over its particles, relative to the mean of the
+/// body: `way2` is the sum of m |change of position|^2 [kg m^2], and `change2` is the sum of
+/// m |change of acceleration|^2 [kg m^2/s^4]. `radius` is the radius of a particle [m], and `mass`
+/// is the mass of the body [kg]. Returns 0 if `way2` is as small as rounding errors.
 Real rate_of_motion(Real way2, Real change2, Real radius, Real mass);
 
 }  // namespace vat

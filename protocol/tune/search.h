@@ -99,9 +99,12 @@ inline constexpr std::size_t kFirstComparison = 2;
 /// - is completed, its error is at most the lower bound of the error of c, and its time is at most
 ///   the present time of c, or the expected time of c divided by kTimeMargin.
 ///
-/// The rule `proven` drops c if d is completed, its error is at most the lower bound of the error
-/// of c, and its total time and the time of its slowest part, both multiplied by kTimeMargin, are
-/// at most those of c so far. Such a candidate cannot be chosen, unless times vary by kTimeMargin.
+/// The rule `proven` drops a candidate c if all of these conditions hold for a completed candidate
+/// d. Without a variation of times by kTimeMargin, no choice can be c.
+///
+/// - error(d) is at most the lower bound of error(c).
+/// - time(d) kTimeMargin is at most the time of c so far.
+/// - The time of the slowest part of d, times kTimeMargin, is at most that of c so far.
 ///
 /// Both rules also drop a candidate whose time exceeds `most_seconds`.
 ///

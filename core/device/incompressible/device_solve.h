@@ -64,8 +64,9 @@ inline std::int32_t groups_of(std::size_t particles) {
 SolveParameters solve_parameters(const Model& model);
 void set_limits(const SolveLimits& limits, SolveParameters& parameters);
 
-/// Solves a Complementarity on a device. The device decides when a solve ends, so that the number
-/// of iterations does not depend on the host. The functions throw opencl::DeviceFailure.
+/// Solves a Complementarity on a device. The device ends a solve if its limits are met. Therefore,
+/// the batches of the host do not change the number of iterations. The functions throw
+/// opencl::DeviceFailure.
 class DeviceSolve {
  public:
   DeviceSolve(opencl::Program& program, const Model& model);
