@@ -10,7 +10,7 @@
 namespace vat::stability {
 
 inline constexpr const char* kToleranceScenes[] = {"dam-break", "buoyancy", "sloshing-tank",
-                                                   "deep-tank"};
+                                                   "deep-tank", "flat-dam-break"};
 
 /// A run with one value for both tolerances.
 struct TolerancePoint {
@@ -18,6 +18,8 @@ struct TolerancePoint {
   Real tolerance = 0;
   bool failed = false;           ///< the guard ended the run
   Real density_error = 0;        ///< maximum over the ticks of the mean over the particles
+  Real energy_gain = 0;          ///< maximum rise of the total energy above its first value [J]
+  Real released = 0;             ///< maximum fall of the gravitational energy [J]
   std::uint64_t steps = 0;       ///< including undone ones
   Real velocity_iterations = 0;  ///< per step, mean over the last steps of the ticks
   Real position_iterations = 0;  ///< the same

@@ -47,7 +47,8 @@ SolveParameters solve_parameters(const Model& model) {
 void set_limits(const SolveLimits& limits, SolveParameters& p) {
   p.mean = limits.mean;
   p.greatest = limits.greatest;
-  p.start = limits.start;
+  p.start_mean = limits.start_mean;
+  p.start_greatest = limits.start_greatest;
   p.negligible = Complementarity::kNegligible * limits.mean;
   p.most_iterations = limits.most_iterations;
 }

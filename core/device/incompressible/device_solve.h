@@ -23,9 +23,10 @@ struct SolveParameters {
   double diagonal_factor;      ///< diagonal / (dt^2 weight squares)
   double mean;                 ///< limit of the mean residual
   double greatest;             ///< limit of the greatest residual
-  double start;                ///< SolveLimits::start
-  double negligible;           ///< x counts as 0 if x diagonal / scale is at most this
-  double least_bound;          ///< see Complementarity
+  double start_mean;           ///< SolveLimits::start_mean
+  double start_greatest;
+  double negligible;   ///< x counts as 0 if x diagonal / scale is at most this
+  double least_bound;  ///< see Complementarity
   double greatest_bound;
   double bound_of_optimal;
   double closing;  ///< see DensityRoom

@@ -18,7 +18,8 @@ typedef struct {
   double diagonal_factor;
   double mean;
   double greatest;
-  double start;
+  double start_mean;
+  double start_greatest;
   double negligible;
   double least_bound;
   double greatest_bound;
@@ -346,7 +347,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void end_iteration(
   if (is_start) progress->longest_step = solve.least_bound;
   progress->iterations = is_start ? 0 : progress->iterations + 1;
   const bool is_far = !isnan(mean) && (mean > solve.mean || total.w > solve.greatest);
-  const bool must_begin = is_start && mean > solve.start;
+  const bool must_begin = is_start && (mean > solve.start_mean || total.w > solve.start_greatest);
   progress->is_open = (is_far || must_begin) && progress->iterations < solve.most_iterations;
 }
 

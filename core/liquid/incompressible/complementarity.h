@@ -18,8 +18,9 @@ struct SolveLimits {
   Real mean = 0;
   Real greatest = 0;
   int most_iterations = 0;
-  /// Initial mean residual above which a solve makes at least one iteration.
-  Real start = std::numeric_limits<Real>::infinity();
+  /// Initial mean and greatest residual above which a solve makes at least one iteration.
+  Real start_mean = std::numeric_limits<Real>::infinity();
+  Real start_greatest = std::numeric_limits<Real>::infinity();
 };
 
 /// A linear complementarity problem with a symmetric, positive semi-definite matrix A: find x >= 0
@@ -63,7 +64,8 @@ class Complementarity {
       return !std::isnan(report.mean) &&
              (report.mean > limits.mean || report.greatest > limits.greatest);
     };
-    const bool must_begin = report.mean > limits.start;
+    const bool must_begin =
+        report.mean > limits.start_mean || report.greatest > limits.start_greatest;
     while ((is_open() || (must_begin && report.iterations == 0)) &&
            report.iterations < limits.most_iterations) {
       const Real slope = choose_direction(report.iterations == 0, runner);

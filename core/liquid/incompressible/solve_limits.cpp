@@ -11,12 +11,16 @@ constexpr Real kGreatestOverMean = 36;  // ratio of maximum and mean, for densit
 // Ratio of maximum and mean for changes of density, which the correction of positions removes.
 constexpr Real kGreatestDivergence = 200;
 // Bounds of loose tolerances. They keep the kinetic energy small that a step adds by removing
-// excess density, and start each solve from pressures that are close to its own.
-constexpr Real kMaxGreatestDivergence = 0.2;  // residual of one particle
-constexpr Real kMaxMeanDivergence = 0.003;    // mean residual
-constexpr Real kStartDivergence = 0.001;      // mean residual above which pressures are updated
-constexpr Real kDivergenceOfDensity = 0.25;   // mean divergence / density tolerance
-constexpr Real kMaxRemoval = 0.0015;          // relative excess density that one step removes
+// excess density, and start each solve from pressures that are close to its own. A residual r of
+// one particle adds about r h / dt to its velocity. Adaptive steps permit velocities of 0.2 h / dt
+// (core/stepping/control/step_control_liquid.cpp), so pressures that no solve updates add at most
+// 0.04 of the greatest velocity in each step. Otherwise the velocities grow while steps shorten.
+constexpr Real kMaxGreatestDivergence = 0.05;  // residual of one particle
+constexpr Real kMaxMeanDivergence = 0.003;     // mean residual
+constexpr Real kStartMeanDivergence = 0.001;   // mean residual above which pressures are updated
+constexpr Real kStartGreatestDivergence = 0.0075;  // the same for the residual of one particle
+constexpr Real kDivergenceOfDensity = 0.25;        // mean divergence / density tolerance
+constexpr Real kMaxRemoval = 0.0015;               // relative excess density that one step removes
 constexpr Real kLeftAlone = 0.2;     // share of the density tolerance that the velocities leave
 constexpr Real kClosing = 0.5;       // share of a gap that is closed in one step
 constexpr Real kLinearShare = 0.25;  // share of the density tolerance for the solve of one round
@@ -29,13 +33,14 @@ DensityRoom density_room(const IncompressibleSolve& wanted) {
 }
 
 SolveLimits velocity_limits(const IncompressibleSolve& wanted) {
-  const Real bound = std::clamp(kDivergenceOfDensity * wanted.density_tolerance, kStartDivergence,
-                                kMaxMeanDivergence);
+  const Real bound = std::clamp(kDivergenceOfDensity * wanted.density_tolerance,
+                                kStartMeanDivergence, kMaxMeanDivergence);
   const Real tolerance = std::min(wanted.divergence_tolerance, bound);
   return {.mean = tolerance,
           .greatest = std::min(kGreatestDivergence * tolerance, kMaxGreatestDivergence),
           .most_iterations = wanted.most_iterations,
-          .start = std::min(tolerance, kStartDivergence)};
+          .start_mean = std::min(tolerance, kStartMeanDivergence),
+          .start_greatest = kStartGreatestDivergence};
 }
 
 SolveLimits place_limits(const IncompressibleSolve& wanted, bool mean_is_met) {
