@@ -86,7 +86,7 @@ bool ClusterNode::is_wanted(const LocatedSession& entry) {
   const bool may_judge = now - lease_.held_since() >= Lease::kOthersTime;
   const bool is_orphan = has_owner
                              ? may_judge && nodes_.silence_of(entry.owner) >= Lease::kOthersTime
-                             : !nodes_.is_seen_within(entry.successor, kFresh);
+                             : !nodes_.is_seen_within(entry.successor, fresh());
   if (!is_orphan) {
     orphans_.erase(entry.number);
     return false;
@@ -98,9 +98,9 @@ bool ClusterNode::is_wanted(const LocatedSession& entry) {
 bool ClusterNode::is_my_turn(const LocatedSession& entry, SteadyClock::duration orphaned) const {
   const Result<InstructionSet> needed = parse_instruction_set(entry.instruction_set);
   if (!needed || !check_available(needed.value())) return false;
-  if (!nodes_.is_seen_within(name(), kFresh)) return false;
+  if (!nodes_.is_seen_within(name(), fresh())) return false;
   const std::size_t before = nodes_.count_before(
-      name(), entry.number, kFresh,
+      name(), entry.number, fresh(),
       [&](const NodeInfo& node) { return has_instructions(node, entry.instruction_set); });
   return orphaned >= static_cast<int>(before) * kOrphanTurn;
 }

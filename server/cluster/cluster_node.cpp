@@ -21,7 +21,6 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kTick(100);
 constexpr milliseconds kRefresh(10'000);
-constexpr milliseconds kAnswering(750);
 constexpr milliseconds kClaimTime(20'000);
 constexpr milliseconds kClaimInterval(100);
 constexpr const char* kMarker = "cluster";
@@ -227,7 +226,7 @@ void ClusterNode::wait_for_tick() {
 
 void ClusterNode::tick() {
   const auto now = clock_.now();
-  if (now - last_renewal_ >= Lease::kRenewal) renew(now);
+  if (now - last_renewal_ >= renewal_.load()) renew(now);
   if (needs_refresh_.exchange(false) || now - last_refresh_ >= kRefresh) {
     last_refresh_ = now;
     post([this] { refresh(); });
@@ -256,6 +255,7 @@ void ClusterNode::measure_load(Time now) {
 
 void ClusterNode::renew(Time now) {
   last_renewal_ = now;
+  renewal_ = Lease::renewal_interval(nodes_.seen_within(Lease::kOthersTime).size());
   measure_load(now);
   if (!has_name_ || renewing_.exchange(true)) return;
   const auto finish = [this, now](const Stream::Appended& result) {
@@ -305,7 +305,8 @@ InstructionSet ClusterNode::common_instructions(InstructionSet greatest) const {
 
 std::optional<std::string> ClusterNode::url_of(const LocatedSession& session) const {
   // The request waits if the owner may have failed, and is answered after its next renewal.
-  if (session.owner.empty() || !nodes_.is_seen_within(session.owner, kAnswering)) return {};
+  const auto answering = renewal_.load() * 3 / 2;
+  if (session.owner.empty() || !nodes_.is_seen_within(session.owner, answering)) return {};
   const auto node = nodes_.find(session.owner);
   if (!node) return {};
   return node->url;
@@ -321,7 +322,7 @@ std::string ClusterNode::best_node() const {
   constexpr double kLeastGain = 0.5;  // cores; a session of this node needs no redirection
   std::string best = name();
   double room = cores_ - load_ + kLeastGain;
-  for (const NodeInfo& node : nodes_.seen_within(kFresh)) {
+  for (const NodeInfo& node : nodes_.seen_within(fresh())) {
     if (!node.accepts || node.room <= room) continue;
     best = node.name;
     room = node.room;

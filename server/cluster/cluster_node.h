@@ -117,7 +117,6 @@ class ClusterNode final : public SessionReplicas, public SendGate {
     std::vector<Moved> waiting;
   };
   using Time = SteadyClock::time_point;
-  static constexpr std::chrono::milliseconds kFresh = 3 * Lease::kRenewal;
 
   void check_data_folder() const;
   /// Writes the node's entry. Waits until an earlier process with the name has no lease.
@@ -127,6 +126,9 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   void drop_foreign_sessions();
   NodeInfo describe() const;
   void listen();
+
+  /// Returns the time within which a running node renews its lease.
+  std::chrono::milliseconds fresh() const { return renewal_.load() + Lease::kGreatestRenewal; }
 
   // On the timer's thread.
   void wait_for_tick();
@@ -189,6 +191,7 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   std::atomic<bool> has_name_ = true;             // false: another process has the node's name
   std::atomic<std::uint64_t> name_revision_ = 0;  // of the node's entry
   std::atomic<double> load_ = 0;                  // used cores
+  std::atomic<std::chrono::milliseconds> renewal_ = Lease::kLeastRenewal;  // interval
 
   mutable std::mutex mutex_;  // guards the members below
   std::map<std::uint64_t, Hosted> hosted_;

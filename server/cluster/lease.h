@@ -1,7 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <mutex>
 
 #include "server/support/clock.h"
@@ -14,9 +16,18 @@ namespace vat {
 /// No two machines compare their clocks. Thread-safe.
 class Lease {
  public:
-  static constexpr std::chrono::milliseconds kRenewal{500};      ///< interval of renewals
   static constexpr std::chrono::milliseconds kHolderTime{2000};  ///< time for the holder
   static constexpr std::chrono::milliseconds kOthersTime{3000};  ///< time for the other nodes
+  static constexpr std::chrono::milliseconds kLeastRenewal{500};
+  static constexpr std::chrono::milliseconds kGreatestRenewal{1000};  ///< two in kHolderTime
+
+  /// Returns the interval of renewals in a cluster of `nodes` nodes. NATS sends each renewal to all
+  /// nodes, so the interval is longer in large clusters.
+  static constexpr std::chrono::milliseconds renewal_interval(std::size_t nodes) {
+    constexpr std::chrono::milliseconds kOfNode{5};
+    return std::clamp(static_cast<int>(std::min<std::size_t>(nodes, 1000)) * kOfNode, kLeastRenewal,
+                      kGreatestRenewal);
+  }
 
   explicit Lease(const Clock& clock) : clock_(clock) {}
 

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+#include <vector>
+
 #include "tests/support/manual_clock.h"
 
 namespace vat::test::lease_test {
@@ -59,6 +62,14 @@ TEST_F(LeaseTest, ACheckOfSessionsThatTookTooLongDoesNotRestoreIt) {
   lease.confirm(clock.now());
   EXPECT_FALSE(lease.reopen(sent));
   EXPECT_FALSE(lease.is_valid());
+}
+
+TEST_F(LeaseTest, IsRenewedTwiceInTheHoldersTimeByTheNodesOfAnyCluster) {
+  for (const auto& [nodes, interval] : std::vector<std::pair<std::size_t, int>>{
+           {0, 500}, {100, 500}, {150, 750}, {200, 1000}, {1'000'000, 1000}}) {
+    EXPECT_EQ(Lease::renewal_interval(nodes), milliseconds(interval)) << nodes;
+    EXPECT_LE(2 * Lease::renewal_interval(nodes), Lease::kHolderTime) << nodes;
+  }
 }
 
 }  // namespace
