@@ -2,6 +2,7 @@ import type { Page } from 'playwright-core';
 import { expect, it } from 'vitest';
 import { formatCount } from '../../web/viewer/panel/format';
 import type { Viewer } from './support/viewer';
+import { linked } from './support/link';
 import { kInTime, Visits } from './support/visits';
 
 /** Input on the picture: mouse, pen, fingers and keys. */
@@ -90,13 +91,28 @@ it.each<[Device, string, string]>([
   await expect.poll(grabs, kInTime).toEqual([]);
 });
 
-/** Waits until the picture differs from another one, and returns it after it is stable. */
-async function changedFrom(picture: string): Promise<string> {
-  const { viewer } = visits;
-  await expect
-    .poll(async () => viewer.difference(picture, await viewer.picture()), kInTime)
-    .toBeGreaterThan(1000);
-  return viewer.stillPicture();
+/** Waits until the camera rests. Returns its distance from its target, and its direction. */
+async function view(): Promise<{ distance: number; direction: number[] }> {
+  let camera: number[] = [];
+  for (let last = ''; last === '' || last !== String(camera);) {
+    last = String(camera);
+    ({ camera } = await linked(visits.viewer.page));
+  }
+  const way = [0, 1, 2].map((axis) => camera[axis]! - camera[axis + 3]!);
+  const distance = Math.hypot(...way);
+  return { distance, direction: way.map((x) => x / distance) };
+}
+
+/** Waits until the direction of the camera differs from another one. Returns the distance. */
+async function turnedFrom(before: number[]): Promise<number> {
+  let distance = 0;
+  const change = async (): Promise<number> => {
+    const now = await view();
+    ({ distance } = now);
+    return Math.hypot(...now.direction.map((x, axis) => x - before[axis]!));
+  };
+  await expect.poll(change, kInTime).toBeGreaterThan(0.1);
+  return distance;
 }
 
 it('turns and zooms by fingers on nothing, and turns by keys', async () => {
@@ -105,11 +121,12 @@ it('turns and zooms by fingers on nothing, and turns by keys', async () => {
   const touch = await touchesOf(viewer.page);
   const box = (await viewer.page.locator('#view').boundingBox())!;
   const corner = { x: box.x + 0.2 * box.width, y: box.y + 0.15 * box.height };
-  const before = await viewer.stillPicture();
+  const picture = await viewer.stillPicture();
+  const before = await view();
   await touch('touchStart', corner);
   for (let n = 1; n <= 4; ++n) await touch('touchMove', { x: corner.x + 20 * n, y: corner.y });
   await touch('touchEnd');
-  const turned = await changedFrom(before);
+  expect(await turnedFrom(before.direction)).toBeCloseTo(before.distance, 3);
   const other = { x: corner.x + 40, y: corner.y };
   await touch('touchStart', corner);
   await touch('touchStart', corner, other);
@@ -117,11 +134,15 @@ it('turns and zooms by fingers on nothing, and turns by keys', async () => {
     await touch('touchMove', corner, { x: other.x + 20 * n, y: other.y });
   }
   await touch('touchEnd');
-  const zoomed = await changedFrom(turned);
+  await expect
+    .poll(async () => (await view()).distance / before.distance, kInTime)
+    .toBeLessThan(0.9);
   expect(await grabs()).toEqual([]);
+  const { direction } = await view();
   await viewer.page.focus('#view');
   for (let n = 0; n < 6; ++n) await viewer.page.keyboard.press('ArrowRight');
-  await changedFrom(zoomed);
+  await turnedFrom(direction);
+  expect(await viewer.difference(picture, await viewer.stillPicture())).toBeGreaterThan(1000);
 });
 
 it('holds a body by keys, pulls it, and releases it', async () => {
