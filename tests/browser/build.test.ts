@@ -1,11 +1,11 @@
 import { expect, it } from 'vitest';
-import type { BodyState, SceneBody } from '../../web/client/index';
+import type { BodyState, Scene, SceneBody } from '../../web/client/index';
 import { kInTime, unfold, Visits } from './support/visits';
 
 /** Building a scene: bodies are added, moved, changed and deleted, and each change is undone. */
 const visits = new Visits();
 
-async function visit(scene: string, tick = 0): Promise<void> {
+async function visit(scene: string | Scene, tick = 0): Promise<void> {
   await visits.visit(scene, { tick });
   await unfold(visits.viewer, 'build-details');
   await visits.viewer.page.waitForSelector('#bodies li[data-body]');
@@ -194,19 +194,14 @@ const ball: SceneBody = {
 };
 
 it('moves a body to a free place but not into others, and undoes it', async () => {
-  await visit('rigid-stack');
-  const { observer, viewer } = visits;
-  await observer.request('scene.load', {
-    scene: {
-      format: 'vat.scene/1',
-      name: 'long',
-      materials: [{ name: 'wood', density: 600 }],
-      vat: { min: [0, 0, 0], max: [1.6, 0.6, 1.2] },
-      bodies: [plank, ball],
-    },
+  await visit({
+    format: 'vat.scene/1',
+    name: 'long',
+    materials: [{ name: 'wood', density: 600 }],
+    vat: { min: [0, 0, 0], max: [1.6, 0.6, 1.2] },
+    bodies: [plank, ball],
   });
-  await viewer.untilScene('long');
-  await viewer.untilTick(0, 0);
+  const { viewer } = visits;
   const move = '#bodies li:has-text("plank") button:has-text("Move")';
   const at = async (): Promise<readonly number[]> => (await bodyOf('plank'))!.center_of_mass!;
   const height = async (): Promise<number> => (await at())[2]!;

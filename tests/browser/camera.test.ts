@@ -4,6 +4,7 @@ import { join } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import type { Page } from 'playwright-core';
 import { afterAll, expect, it } from 'vitest';
+import { linked } from './support/link';
 import { openPage, sharedServer } from './support/shared';
 import { kInTime, Visits } from './support/visits';
 
@@ -17,16 +18,6 @@ const kRecording = fileURLToPath(
 async function openMenu(page: Page): Promise<void> {
   await page.keyboard.press('c');
   await page.waitForSelector('#photo');
-}
-
-/** Returns the camera and the position in the link of the dialog. */
-async function linked(page: Page): Promise<{ camera: number[]; at: string | null; url: URL }> {
-  await page.keyboard.press('l');
-  await page.waitForSelector('#share[open]');
-  const url = new URL(await page.inputValue('#share-link'));
-  await page.keyboard.press('Escape');
-  const parts = new URLSearchParams(url.hash.slice(1));
-  return { camera: parts.get('camera')!.split(',').map(Number), at: parts.get('at'), url };
 }
 
 const files = mkdtempSync(join(tmpdir(), 'vat-camera-'));

@@ -1,5 +1,5 @@
 import { afterEach, expect, it } from 'vitest';
-import type { Page } from 'playwright-core';
+import { controlClock } from './support/clock';
 import { Observer } from './support/observer';
 import { Proxy } from './support/proxy';
 import type { Ways } from './support/proxy';
@@ -169,23 +169,6 @@ const kTimers = `{
     for (const [, act] of all) act();
   };
 }`;
-
-declare global {
-  interface Window {
-    /** Sets the page's clock forward by `time` [ms]. */
-    skip(time: number): void;
-  }
-}
-
-/** Makes the page's clock advance by `skip`. */
-async function controlClock(page: Page): Promise<void> {
-  await page.addInitScript(() => {
-    const now = performance.now.bind(performance);
-    let ahead = 0;
-    performance.now = () => now() + ahead;
-    window.skip = (time) => (ahead += time);
-  });
-}
 
 const fireTimers = ({ page }: Viewer): Promise<void> =>
   page.evaluate(() => {

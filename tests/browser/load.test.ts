@@ -79,16 +79,13 @@ function watchPictures(): void {
 }
 
 it('does nothing once per particle on the page thread, and uploads no more than it must', async () => {
-  await visits.visit('dam-break', {
+  await visits.visit(damBreak(), {
     viewport: { width: 400, height: 300 }, // small, because drawing is not the subject
     view: 'liquid:particles,smooth:on,colour:speed',
     before: (page) => page.addInitScript(watchPictures),
   });
   const { observer, viewer } = visits;
   const { page } = viewer;
-  await observer.request('scene.load', { scene: damBreak() });
-  await viewer.untilScene('many');
-  await viewer.until('#view[data-tick]');
   const drawn = (count: number): Promise<unknown> =>
     page.waitForFunction((least) => window.pictures.length >= least, count);
   const step = async (): Promise<void> => {

@@ -15,6 +15,8 @@ const kFile = fileURLToPath(new URL('../golden/frame_recordings/twice.vatrec', i
 /** The size of a recording in a notebook. `@` is the page in base64. */
 const kFrame = '<iframe width="700" height="400" src="data:text/html;base64,@"></iframe>';
 
+const kSmall = { viewport: { width: 720, height: 420 }, deviceScaleFactor: 0.5 };
+
 async function open(buffer: Buffer): Promise<void> {
   await unfold(visits.viewer, 'kept-details');
   await visits.viewer.page.setInputFiles('#recording-input', {
@@ -50,7 +52,7 @@ it.each(['page', 'frame of a notebook'])('plays an exported recording as a %s', 
   const folder = mkdtempSync(join(tmpdir(), 'vat-export-'));
   const file = join(folder, 'twice.html');
   execFileSync(program(), ['export', kFile, '--html', file], { stdio: 'ignore' });
-  const page = await visits.viewer.page.context().browser()!.newPage();
+  const page = await visits.viewer.page.context().browser()!.newPage(kSmall);
   try {
     const data = readFileSync(file).toString('base64');
     if (place === 'page') await page.goto(pathToFileURL(file).href);

@@ -1,15 +1,33 @@
 import { expect, it } from 'vitest';
+import { controlClock } from './support/clock';
 import { kAdminToken, Server } from './support/server';
 import { kInTime, Visits } from './support/visits';
 
 /** Sessions that change or close, refusals, and pages that do not draw. */
 const visits = new Visits(new Server());
 
+/** The page's clock advances by `skip`. */
+const kLook = { before: controlClock };
+const visit = (scene: string): Promise<void> => visits.visit(scene, kLook);
+
+/** Waits for this number of ticks. */
+async function pass(ticks: number): Promise<void> {
+  const tick = await visits.observer.tick();
+  await expect.poll(() => visits.observer.tick(), kInTime).toBeGreaterThan(tick + ticks);
+}
+
+/** Waits until no frames arrive. The rate is that of two seconds, which the page's clock skips. */
+async function untilNoFrames(): Promise<void> {
+  await visits.viewer.page.evaluate(() => window.skip(2000));
+  await pass(20);
+  await visits.viewer.until('#byte-rate[data-value="0"]');
+}
+
 const dropped = async (): Promise<number> =>
   Number(await visits.viewer.page.getAttribute('#dropped', 'data-value'));
 
 it('gets few frames while it does not draw, also of a new scene, and the newest after that', async () => {
-  await visits.visit('dam-break');
+  await visit('dam-break');
   const { observer, viewer } = visits;
   await observer.request('control.play', {});
   await viewer.untilTick(1);
@@ -18,12 +36,13 @@ it('gets few frames while it does not draw, also of a new scene, and the newest 
   // At most three of every fourth frame arrive before the server waits, so the gap is at least 48
   // ticks.
   await expect.poll(() => observer.tick(), kInTime).toBeGreaterThan(tick + 60);
-  await viewer.until('#byte-rate[data-value="0"]'); // the server waits for acknowledgements
+  await untilNoFrames(); // the server waits for acknowledgements
   await viewer.brake(false);
   await viewer.untilTick(tick + 60);
   expect(await dropped()).toBeGreaterThan(droppedBefore + 10);
   await viewer.brake(true);
-  await viewer.until('#byte-rate[data-value="0"]');
+  await pass(20); // the last frames arrive
+  await untilNoFrames();
   await observer.request('scene.load', { scene: 'rigid-stack' });
   await viewer.untilScene('rigid-stack');
   await viewer.brake(false);
@@ -34,7 +53,7 @@ it('gets few frames while it does not draw, also of a new scene, and the newest 
 });
 
 it('names a scene from outside of the catalogue', async () => {
-  await visits.visit('rigid-stack');
+  await visit('rigid-stack');
   const { observer, viewer } = visits;
   const scene = {
     format: 'vat.scene/1' as const,
@@ -52,7 +71,7 @@ it('names a scene from outside of the catalogue', async () => {
 });
 
 it('shows the rejections of the server', async () => {
-  await visits.visit('rigid-stack');
+  await visit('rigid-stack');
   const { page } = visits.viewer;
   await page.evaluate(() => {
     document.getElementById('scene')!.append(new Option('Gone', 'gone'));
@@ -63,7 +82,7 @@ it('shows the rejections of the server', async () => {
 });
 
 it('passes keys to the open list of scenes, and handles them elsewhere', async () => {
-  await visits.visit('dam-break');
+  await visit('dam-break');
   const { observer, viewer } = visits;
   const tick = await observer.tick();
   await viewer.page.focus('#scene');
@@ -78,7 +97,7 @@ it('passes keys to the open list of scenes, and handles them elsewhere', async (
 });
 
 it('plays and pauses with the space bar, and steps and resets by buttons', async () => {
-  await visits.visit('dam-break');
+  await visit('dam-break');
   const { observer, viewer } = visits;
   const { page } = viewer;
   const before = await viewer.stillPicture();
@@ -100,7 +119,7 @@ it('plays and pauses with the space bar, and steps and resets by buttons', async
 });
 
 it('draws again once the browser gives the graphics back', async () => {
-  await visits.visit('dam-break');
+  await visit('dam-break');
   const { viewer } = visits;
   const before = await viewer.stillPicture();
   await viewer.page.evaluate(() => {
@@ -119,7 +138,7 @@ it('draws again once the browser gives the graphics back', async () => {
 });
 
 it('shows that its session was closed, and joins the remaining session', async () => {
-  await visits.visit('rigid-stack');
+  await visit('rigid-stack');
   const { observer, viewer } = visits;
   const [first] = (await observer.request('session.list', {})).sessions;
   await observer.request('session.create', { name: 'other', scene: 'dam-break' });

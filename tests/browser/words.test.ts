@@ -86,12 +86,12 @@ it('shows that the page is slow while the session plays, and shows all particles
   const page = await open({
     before: (page) =>
       page.addInitScript(() => {
-        // The page gets one of thirty animation frames: acknowledgements are late by 0.25 s on
-        // average, and the server tolerates 0.1 s.
+        // The page gets two of its fifteen animation frames per second: acknowledgements are late
+        // by 0.25 s on average, and the server tolerates 0.1 s.
         const next = window.requestAnimationFrame.bind(window);
         const after = (frames: number, callback: FrameRequestCallback): number =>
           next(frames === 0 ? callback : () => after(frames - 1, callback));
-        window.requestAnimationFrame = (callback) => after(29, callback);
+        window.requestAnimationFrame = (callback) => after(6, callback);
       }),
   });
   await page.until('#connection[data-slow="true"]');

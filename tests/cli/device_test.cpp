@@ -155,18 +155,5 @@ TEST(DeviceCommand, RecordsOnADevice) {
   EXPECT_THAT(folder.names(), testing::ElementsAre("a.vatrec"));
 }
 
-TEST(DeviceCommand, RefusesDevicesAndScenes) {
-  struct Case {
-    std::string scene;
-    std::string device;
-    std::string message;
-  };
-  for (const Case& one : {Case{kDamBreak, "opencl:99", "/device: opencl:99 does not exist"},
-                          Case{test_scene("mixed"), "opencl", "/bodies/1/kind: must be liquid"}}) {
-    EXPECT_THAT(run_vat({"simulate", one.scene, "--until", "0.02", "--device", one.device}),
-                exits(1, HasSubstr(one.message)));
-  }
-}
-
 }  // namespace
 }  // namespace vat::test::device_test

@@ -127,15 +127,6 @@ TEST(Output, FullStandardOutputIsAnError) {
   EXPECT_THAT(result.err, HasSubstr("standard output cannot be written"));
 }
 
-TEST(Output, MissingFolderIsAnError) {
-  const TemporaryFolder folder;
-  for (const char* option : {"--output", "--diagnostics"}) {
-    const std::string file = folder.file("missing/run.csv");
-    EXPECT_THAT(run_vat({"simulate", test_scene("pair"), "--until", "0.02", option, file}),
-                exits(1, StartsWith(file + ": cannot be created: No such file or directory")));
-  }
-}
-
 // A pipe of the test represents all outputs that are neither file nor folder. A test with /dev/null
 // could replace that device if the program had a fault and the user were root.
 TEST(Output, PipesAndDevicesAreWrittenAndNotReplaced) {

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <optional>
-
 #include "server/script/server_process.h"
 #include "tests/cluster/nats_servers.h"
 #include "tests/recovery/client.h"

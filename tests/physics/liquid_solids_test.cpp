@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "tests/support/scenes.h"
 
 // Solids in a weakly compressible liquid, near walls.

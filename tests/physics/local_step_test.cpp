@@ -2,9 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
 
-#include "core/model/compile.h"
 #include "core/stepping/local_step.h"
 #include "core/stepping/step_plan.h"
 #include "tests/support/mixed_scenes.h"

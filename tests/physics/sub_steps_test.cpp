@@ -3,7 +3,6 @@
 #include <cmath>
 #include <vector>
 
-#include "core/model/compile.h"
 #include "core/state/controls.h"
 #include "core/stepping/local_step.h"
 #include "core/stepping/step_plan.h"

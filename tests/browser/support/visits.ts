@@ -74,8 +74,9 @@ export class Visits {
   }
 
   /** Shows a scene that is paused at this tick. */
-  async visit(scene: string, { tick = 0, view = '', ...look }: Visit = {}): Promise<void> {
+  async visit(scene: string | Scene, { tick = 0, view = '', ...look }: Visit = {}): Promise<void> {
     const { observer } = this;
+    const name = typeof scene === 'string' ? scene : scene.name!;
     await observer.request('control.pause', {}); // also for later scenes
     await observer.request('scene.load', { scene: kNothing });
     await this.open(look);
@@ -85,7 +86,7 @@ export class Visits {
     await observer.request('control.set_speed', { speed: 1 });
     await observer.request('scene.load', { scene });
     // The camera frames the first state that the page shows.
-    await this.viewer.untilScene(scene);
+    await this.viewer.untilScene(name);
     await this.viewer.untilTick(0, 0);
     if (tick > 0) await observer.request('control.step', { ticks: tick });
     await this.viewer.untilTick(tick, tick);

@@ -1,6 +1,5 @@
 // Parts of the writers.
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

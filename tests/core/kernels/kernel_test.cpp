@@ -8,7 +8,6 @@
 #include "core/kernels/lattice_sum.h"
 #include "core/kernels/mueller_kernels.h"
 #include "core/kernels/smoothing_kernel.h"
-#include "core/scene/scene.h"
 #include "tests/core/kernels/quadrature.h"
 
 namespace vat::test::kernel_test {

@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "core/laws/pair_direction.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "core/stepping/integrator.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"
 #include "tests/support/totals.h"

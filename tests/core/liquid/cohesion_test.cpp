@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "core/kernels/lattice_sum.h"
-#include "core/numerics/step_limits.h"
 #include "tests/core/kernels/quadrature.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <vector>
 
 #include "core/kernels/smoothing_kernel.h"
 #include "core/liquid/pairs/weakly_compressible_pairs.h"

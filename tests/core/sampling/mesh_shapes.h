@@ -1,7 +1,5 @@
 #pragma once
 
-#include "core/scene/scene.h"
-
 namespace vat {
 
 /// A box of twelve triangles, counter-clockwise if seen from outside.

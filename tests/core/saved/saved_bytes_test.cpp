@@ -1,7 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "core/saved/sealed_bytes.h"
 #include "core/support/byte_io.h"
 #include "tests/core/support/resting_scenes.h"

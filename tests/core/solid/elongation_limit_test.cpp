@@ -5,7 +5,6 @@
 #include <cmath>
 #include <set>
 
-#include "core/model/compile.h"
 #include "core/validation/validate.h"
 #include "tests/support/distance.h"
 #include "tests/support/errors.h"

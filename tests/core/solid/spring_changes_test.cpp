@@ -3,9 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
-#include "core/validation/validate.h"
 #include "tests/support/same_bits.h"
 #include "tests/support/scenes.h"
 

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <memory>
 
 #include "core/limits.h"
 #include "tests/support/force_probe.h"

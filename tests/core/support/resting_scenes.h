@@ -1,6 +1,5 @@
 #pragma once
 
-#include <numbers>
 #include <string>
 #include <utility>
 

@@ -1,6 +1,5 @@
 #include "protocol/client/methods/methods.h"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "protocol/client/methods/invalid_value.h"

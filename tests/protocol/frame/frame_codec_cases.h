@@ -65,7 +65,6 @@ class World {
   }
   /// Advances the time only.
   void wait(int frames) { frame_ += frames; }
-  std::size_t drop_count() const { return drops_.size(); }
 
   PublishedState state() const {
     PublishedState state;

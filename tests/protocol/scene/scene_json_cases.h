@@ -3,7 +3,6 @@
 #include <string>
 
 #include "core/scene/scene.h"
-#include "protocol/scene/scene_json.h"
 
 /// A scene that uses every member of the format, as a document and as values, and a comparison of
 /// scenes by their bits.

@@ -1,6 +1,5 @@
 // Accounting of limits: token buckets of messages, the budget of all sessions, and addresses.
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <atomic>

@@ -8,7 +8,6 @@
 #include <sstream>
 
 #include "server/cli/serve/serve_access.h"
-#include "server/http/downloads.h"
 #include "tests/server/fixture/session_fixture.h"
 #include "tests/support/temporary_folder.h"
 

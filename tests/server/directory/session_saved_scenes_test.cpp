@@ -1,7 +1,5 @@
 // Scenes that users save.
 
-#include <gmock/gmock.h>
-
 #include "tests/server/directory/saved_states_fixture.h"
 
 namespace vat::test::session_saved_scenes_test {

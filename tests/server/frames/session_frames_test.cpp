@@ -1,6 +1,5 @@
 // Delivery of frames and events in a session.
 
-#include "protocol/scene/scene_json.h"
 #include "server/frames/frame_feed.h"
 #include "server/messages/limits.h"
 #include "server/session/core/session_core.h"

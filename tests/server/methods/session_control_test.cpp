@@ -1,6 +1,5 @@
 // control.*: play, pause, step, reset and speed.
 
-#include "server/session/ticks/tick_clock.h"
 #include "tests/server/fixture/session_fixture.h"
 
 namespace vat::test::session_control_test {

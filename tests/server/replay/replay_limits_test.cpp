@@ -1,7 +1,5 @@
 // Limits of recordings, logs and downloads.
 
-#include <gmock/gmock.h>
-
 #include "tests/server/replay/replay_fixture.h"
 
 namespace vat::test::replay_limits_test {

@@ -1,7 +1,5 @@
 // Import of recordings, and their replay.
 
-#include <gmock/gmock.h>
-
 #include "server/history/recording.h"
 #include "server/session/core/scene_loading.h"
 #include "tests/server/replay/replay_session_fixture.h"
@@ -32,8 +30,6 @@ TEST_F(ReplaySession, RefusesFilesThatAreNoRecordings) {
   std::string damaged = file;
   damaged[file.size() / 2] ^= 1;
   EXPECT_EQ(code(import(carl, damaged)), "damaged");
-  EXPECT_EQ(code(import(carl, file.substr(0, file.size() - 1))), "wrong_length");
-  EXPECT_EQ(code(import(carl, std::string("no recording at all"))), "other_format");
   EXPECT_EQ(carl.error("recording.import", {{"size", 9}, {"offset", 0}, {"data", "a"}})
                 .at("data")
                 .at("path"),

@@ -1,6 +1,5 @@
 // Compares the method table with the documents and the client's types.
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <fstream>

@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 
 #include "core/stepping/step_engine.h"
-#include "server/session/core/session_restore.h"
 #include "tests/server/session/recovery_fixture.h"
 #include "tests/support/lone_environment.h"
 

@@ -1,7 +1,5 @@
 #include <gmock/gmock.h>
 
-#include <atomic>
-
 #include "server/transport/ws_upgrade.h"
 #include "tests/server/transport/transport_fixture.h"
 
