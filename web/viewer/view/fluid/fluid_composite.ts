@@ -121,7 +121,9 @@ const kLight = /* glsl */ `
 
     vec3 passed = pow(clamp(colour, 0.03, 0.95), vec3(1.3 * deep)) * (1.0 - paint);
     // Light that small particles and bubbles in the liquid scatter.
-    float murk = 1.0 - (1.0 - max(paint, 0.04)) * exp(-0.6 * deep) * (1.0 - paint);
+    // Behind a drop is the open scene, and the drop is a clear lens.
+    float cloudy = mix(0.6, 0.15, smoothstep(0.0, 8.0 * radius, beyond));
+    float murk = 1.0 - (1.0 - max(paint, 0.04)) * exp(-cloudy * deep) * (1.0 - paint);
     // Less light reaches the depth of a liquid.
     float deepness = mix(mix(0.45, 1.0, smoothstep(0.0, 0.6, (world.z - floor_z) / height)), 1.0, paint);
     vec3 pale = mix(colour, vec3(dot(colour, vec3(0.2, 0.6, 0.2)) + 0.15), 0.1);
