@@ -82,8 +82,9 @@ std::optional<LocatedSession> read_located(const Bucket::Entry& entry) {
 
 }  // namespace
 
-SessionLocator::SessionLocator(NatsConnection& connection)
-    : bucket_(connection, "vat-sessions", std::chrono::milliseconds(0)) {}
+SessionLocator::SessionLocator(NatsConnection& connection, std::uint64_t kept_changes)
+    : bucket_(connection, "vat-sessions", std::chrono::milliseconds(0)),
+      kept_changes_(kept_changes) {}
 
 void SessionLocator::watch(std::function<void(const LocatedSession&)> changed) {
   changed_ = std::move(changed);
@@ -138,8 +139,11 @@ void SessionLocator::refresh() {
     const std::lock_guard lock(mutex_);
     known = complete_to_;
   }
+  drop_old_marks(last);
   if (last == known) return;
-  if (known == 0 || last < known) return read_all(last);  // at the start, or of a new bucket
+  // At the start, of a new bucket, or if marks of missed removals may be dropped during the
+  // reading.
+  if (known == 0 || last < known || last - known > kept_changes_ / 2) return read_all(last);
   std::uint64_t reached = last;
   for (const Bucket::Entry& entry : bucket_.changes_since(known)) {
     follow(entry);
@@ -155,8 +159,11 @@ void SessionLocator::read_all(std::uint64_t last_revision) {
     const std::lock_guard lock(mutex_);
     before = sessions_;
   }
-  for (const Bucket::Entry& entry : bucket_.all(std::string(kSessionKey) + ">")) {
-    if (const auto session = read_located(entry)) {
+  for (const Bucket::Entry& entry : bucket_.changes_since(0)) {
+    if (entry.is_removed) {
+      const std::lock_guard lock(mutex_);
+      marks_.emplace_back(entry.key, entry.revision);
+    } else if (const auto session = read_located(entry)) {
       before.erase(session->number);
       note(*session, false);
     }
@@ -168,6 +175,25 @@ void SessionLocator::read_all(std::uint64_t last_revision) {
   }
   const std::lock_guard lock(mutex_);
   complete_to_ = last_revision;
+}
+
+void SessionLocator::remove_key(const std::string& key, std::uint64_t revision) {
+  const std::uint64_t mark = bucket_.remove(key, revision);
+  const std::lock_guard lock(mutex_);
+  marks_.emplace_back(key, mark);
+}
+
+void SessionLocator::drop_old_marks(std::uint64_t last_revision) {
+  for (;;) {
+    std::pair<std::string, std::uint64_t> mark;
+    {
+      const std::lock_guard lock(mutex_);
+      if (marks_.empty() || marks_.front().second + kept_changes_ > last_revision) return;
+      mark = std::move(marks_.front());
+      marks_.pop_front();
+    }
+    bucket_.drop_mark(mark.first, mark.second);
+  }
 }
 
 std::uint64_t SessionLocator::next_number() {
@@ -214,7 +240,7 @@ void SessionLocator::check_name(const LocatedSession& session) {
 void SessionLocator::free_name(const std::string& name, std::uint64_t number) {
   if (name.empty()) return;
   const auto entry = bucket_.get(key_of_name(name));
-  if (entry && entry->value == std::to_string(number)) bucket_.remove(entry->key, entry->revision);
+  if (entry && entry->value == std::to_string(number)) remove_key(entry->key, entry->revision);
 }
 
 LocatedSession SessionLocator::create(LocatedSession session) {
@@ -264,7 +290,7 @@ LocatedSession SessionLocator::rename(const LocatedSession& session, const std::
 }
 
 void SessionLocator::remove(const LocatedSession& session) {
-  bucket_.remove(session_key(session.number), session.revision);
+  remove_key(session_key(session.number), session.revision);
   free_name(session.name, session.number);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -8,6 +9,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "server/nats/bucket.h"
@@ -31,14 +33,15 @@ struct LocatedSession {
 /// NatsError; its kind is `conflict` if another node has changed the entry.
 class SessionLocator {
  public:
-  /// The connection must outlive the locator.
-  explicit SessionLocator(NatsConnection& connection);
+  /// The connection must outlive the locator. The bucket keeps the marks of removed sessions for
+  /// `kept_changes` changes.
+  explicit SessionLocator(NatsConnection& connection, std::uint64_t kept_changes = 10'000);
 
   /// Calls `changed` after each change of the copy, on a thread of the connection or of the caller
   /// of refresh().
   void watch(std::function<void(const LocatedSession&)> changed);
   /// Reads the entries at the first call, and afterwards the changes that watch() has missed, for
-  /// example during a loss of the connection. Waits.
+  /// example during a loss of the connection. Drops old marks. Waits.
   void refresh();
 
   /// Returns a number that no session of the cluster has had. Waits.
@@ -73,6 +76,8 @@ class SessionLocator {
   /// Removes the session and throws NatsError if the name belongs to another session.
   void check_name(const LocatedSession& session);
   void free_name(const std::string& name, std::uint64_t number);
+  void remove_key(const std::string& key, std::uint64_t revision);
+  void drop_old_marks(std::uint64_t last_revision);
   void follow(const Bucket::Entry& entry);
   void read_all(std::uint64_t last_revision);
   /// Notes an entry unless a later one is known, and calls the function of watch().
@@ -80,10 +85,12 @@ class SessionLocator {
   void erase(std::map<std::uint64_t, LocatedSession>::iterator session);
 
   Bucket bucket_;
+  const std::uint64_t kept_changes_;
   mutable std::mutex mutex_;  // guards the members up to `complete_to_`
   std::map<std::uint64_t, LocatedSession> sessions_;
   std::map<std::string, std::set<std::uint64_t>> by_owner_;  // numbers of `sessions_`
   std::map<std::uint64_t, std::uint64_t> removed_;  // revisions of removals by session number
+  std::deque<std::pair<std::string, std::uint64_t>> marks_;  // to be dropped: keys and revisions
   std::uint64_t complete_to_ = 0;  // the copy contains all changes up to this revision
   std::function<void(const LocatedSession&)> changed_;
   std::unique_ptr<NatsConnection::Subscription> watch_;

@@ -27,9 +27,9 @@ std::optional<Bucket::Entry> Bucket::get(const std::string& key) {
   return Entry{key, std::move(message->data), message->sequence, false};
 }
 
-std::vector<Bucket::Entry> Bucket::all(const std::string& pattern) {
+std::vector<Bucket::Entry> Bucket::all() {
   std::vector<Entry> entries;
-  for (const std::string& subject : stream_.subjects(prefix_ + pattern)) {
+  for (const std::string& subject : stream_.subjects(prefix_ + ">")) {
     if (auto entry = get(subject.substr(prefix_.size()))) entries.push_back(*std::move(entry));
   }
   return entries;
@@ -63,8 +63,12 @@ void Bucket::put(const std::string& key, const std::string& value, std::uint64_t
   stream_.append(subject(key), value, revision, {}, std::move(done));
 }
 
-void Bucket::remove(const std::string& key, std::uint64_t revision) {
-  stream_.append(subject(key), {}, revision, {{kOperation, "DEL"}});
+std::uint64_t Bucket::remove(const std::string& key, std::uint64_t revision) {
+  return stream_.append(subject(key), {}, revision, {{kOperation, "DEL"}});
+}
+
+void Bucket::drop_mark(const std::string& key, std::uint64_t revision) {
+  stream_.purge_later(subject(key), revision + 1);
 }
 
 void Bucket::purge(const std::string& pattern) {

@@ -32,8 +32,8 @@ class Bucket {
 
   /// Returns the value, if the key has one.
   std::optional<Entry> get(const std::string& key);
-  /// Returns the values of all keys that match the pattern.
-  std::vector<Entry> all(const std::string& pattern = ">");
+  /// Returns the values of all keys.
+  std::vector<Entry> all();
   /// Returns the revision of the newest change; 0: there was none.
   std::uint64_t last_revision() { return stream_.last_sequence(); }
   /// Returns the last change of each key that has changed after the revision, in ascending order.
@@ -46,8 +46,11 @@ class Bucket {
   /// As put(), but calls `done` with the new revision.
   void put(const std::string& key, const std::string& value, std::uint64_t revision,
            std::function<void(Stream::Appended)> done);
-  /// Removes the value if the key has the revision.
-  void remove(const std::string& key, std::uint64_t revision);
+  /// Removes the value if the key has the revision. Returns the revision of the mark that remains.
+  std::uint64_t remove(const std::string& key, std::uint64_t revision);
+  /// Removes the mark of a removal, unless the key has a newer revision. Does not wait. A failure
+  /// has no effect.
+  void drop_mark(const std::string& key, std::uint64_t revision);
   /// Removes the values of all keys that match the pattern, and their revisions.
   void purge(const std::string& pattern);
 

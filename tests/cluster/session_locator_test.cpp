@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/cluster/nats_servers.h"
 #include "tests/support/wait.h"
 
@@ -109,6 +111,41 @@ TEST_F(SessionLocatorTest, ARefreshReadsANewBucketCompletely) {
   other.refresh();
   ASSERT_EQ(other.all().size(), 1U);
   EXPECT_EQ(other.find(created.number)->name, "pool");
+}
+
+TEST_F(SessionLocatorTest, MarksOfRemovedSessionsAreDroppedAfterManyChanges) {
+  constexpr std::uint64_t kKept = 8;
+  SessionLocator dropping(connection, kKept);
+  SessionLocator late(connection, kKept);
+  const LocatedSession removed = dropping.create(make(dropping, "pool"));
+  LocatedSession other = dropping.create(make(dropping, "lake"));
+  late.refresh();
+  ASSERT_EQ(late.all().size(), 2U);
+  dropping.remove(removed);
+  Bucket bucket(connection, "vat-sessions", std::chrono::milliseconds(0));
+  const auto count_marks = [&] {
+    return std::ranges::count_if(bucket.changes_since(0), &Bucket::Entry::is_removed);
+  };
+  dropping.refresh();
+  EXPECT_EQ(count_marks(), 2) << "of the session and its name";
+  for (std::uint64_t n = 0; n < kKept; ++n) other = dropping.renew(other);
+  dropping.refresh();
+  EXPECT_TRUE(wait_until([&] { return count_marks() == 0; }));
+  late.refresh();
+  EXPECT_EQ(late.all().size(), 1U) << "without the mark";
+  EXPECT_EQ(late.find(other.number)->name, "lake");
+}
+
+TEST_F(SessionLocatorTest, ANewNodeDropsTheMarksOfEarlierOnes) {
+  const LocatedSession other = locator.create(make(locator, "lake"));
+  locator.remove(locator.create(make(locator, "pool")));
+  locator.renew(other);
+  SessionLocator later(connection, 1);
+  later.refresh();
+  later.refresh();
+  Bucket bucket(connection, "vat-sessions", std::chrono::milliseconds(0));
+  EXPECT_TRUE(wait_until(
+      [&] { return std::ranges::none_of(bucket.changes_since(0), &Bucket::Entry::is_removed); }));
 }
 
 TEST_F(SessionLocatorTest, SessionsAreListedByOwner) {
