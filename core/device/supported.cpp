@@ -3,8 +3,20 @@
 #include <algorithm>
 
 #include "core/damping/damping_solve.h"
+#include "core/device/incompressible/device_step_control.h"
 
 namespace vat {
+namespace {
+
+/// Returns whether a step can be too long for explicit viscosity.
+bool may_solve_viscosity(const Model& model) {
+  const Numerics& numerics = model.scene.numerics;
+  if (!model.is_incompressible) return must_solve_viscosity(model, numerics.step);
+  const bool is_adaptive = numerics.control == StepControl::adaptive;
+  return must_solve_own_damping(model, is_adaptive ? longest_adaptive_step(model) : numerics.step);
+}
+
+}  // namespace
 
 Errors find_features_not_on_device(const Model& model) {
   Errors errors;
@@ -50,10 +62,8 @@ Errors find_features_not_on_device(const Model& model) {
          "must be fixed on a device");
   reject(is_incompressible && control == StepControl::local, "/numerics/control",
          "must be fixed or adaptive on a device");
-  const Real step = scene.numerics.step;
-  reject(
-      is_incompressible ? must_solve_own_damping(model, step) : must_solve_viscosity(model, step),
-      "/numerics/step", "must resolve the viscosity of the liquid on a device");
+  reject(may_solve_viscosity(model), "/numerics/step",
+         "must resolve the viscosity of the liquid on a device");
   reject(model.has_surface_tension || model.cohesion.has_value(), "/materials",
          "must have no surface tension on a device");
   reject(model.is_filled, "/vat/lid", "must be false for a vat full of liquid on a device");

@@ -95,6 +95,18 @@ TEST(IncompressibleDevice, ChoosesTheStepsOfTheCpu) {
   EXPECT_LT(least, scene.numerics.step / 4) << "the motion limits steps";
 }
 
+// The nominal step does not resolve the viscosity, but the weight of the liquid shortens all steps.
+TEST(IncompressibleDevice, TakesAdaptiveStepsThatResolveTheViscosity) {
+  Scene scene = make_adaptive();
+  scene.materials[0].liquid->viscosity = 0.1;
+  Simulation device = make_on_device(scene);
+  Simulation cpu = make_simulation(scene);
+  const AdvanceReport report = device.advance(4);
+  EXPECT_EQ(report.device_steps, 4U);
+  EXPECT_EQ(report.steps, cpu.advance(4).steps);
+  EXPECT_LT(difference(device, cpu), 1e-3 * kSpacing);
+}
+
 // The probe of the first step finds a motion that the other limits do not see.
 TEST(IncompressibleDevice, ProbesTheFirstStep) {
   Scene scene = make_adaptive();
@@ -301,6 +313,10 @@ TEST(IncompressibleDevice, RefusesFeaturesThatItLacks) {
       {"/kernel", [](Scene& s) { s.kernel = KernelId::cubic_spline; }},
   };
   expect_refusals(make_column(), cases);
+  const SceneCase adaptive[] = {
+      {"/numerics/step", [](Scene& s) { s.materials[0].liquid->viscosity = 200; }},
+  };
+  expect_refusals(make_adaptive(), adaptive);
 }
 
 }  // namespace
