@@ -305,6 +305,19 @@ TEST(IncompressibleDevice, LeavesAFailedStepToTheCpu) {
   }
 }
 
+TEST(IncompressibleDevice, RestoresTheStateBeforeAFailedStep) {
+  Scene fixed = make_column();
+  fixed.vat->max.z() = 4;
+  fixed.bodies[0].position = {0, 0, 2};
+  fixed.bodies[0].velocity = {0, 0, -9.97};  // the greatest speed is 10 m/s
+  expect_restored_state(fixed, 1, 2);
+  Scene adaptive = make_adaptive();
+  // The integer positions of the device end at 64 support radii, 0.57 m above the column.
+  adaptive.bodies[0].position.z() = 64 * 2 * kSpacing - 0.57 - 0.23;
+  adaptive.bodies[0].velocity = {0, 0, 19};
+  expect_restored_state(adaptive, 1, 2);
+}
+
 TEST(IncompressibleDevice, RefusesFeaturesThatItLacks) {
   const SceneCase cases[] = {
       {"/forces/pressure", [](Scene& s) { s.forces.pressure = false; }},

@@ -145,6 +145,56 @@ inline void expect_steps_of_cpu(const Scene& scene, std::uint32_t steps) {
   EXPECT_EQ(device.state_hash(), cpu.state_hash());
 }
 
+/// Expects equal bits after ten steps in one call and in calls of 3 and 7 steps, `rounds` times,
+/// and after a snapshot is restored.
+inline void expect_same_bits_in_any_portions(const Scene& scene, std::uint32_t rounds) {
+  Simulation one = make_on_device(scene);
+  Simulation other = make_on_device(scene);
+  one.advance(10 * rounds);
+  for (std::uint32_t n = 0; n < 2 * rounds; ++n) other.advance(n % 2 == 0 ? 3 : 7);
+  EXPECT_EQ(one.state_hash(), other.state_hash());
+  const Snapshot middle = one.snapshot();
+  one.advance(20);
+  const std::uint64_t end = one.state_hash();
+  one.restore(middle);
+  EXPECT_EQ(one.advance(20).device_steps, 20U);
+  EXPECT_EQ(one.state_hash(), end);
+}
+
+/// Expects that the device continues a state of the CPU, and the reverse, with this tolerance of
+/// positions after `steps` steps [m].
+inline void expect_continuation(const Scene& scene, std::uint32_t steps, Real tolerance) {
+  Simulation cpu = make_simulation(scene);
+  cpu.advance(steps);
+  Simulation device = Simulation::from(cpu.snapshot());
+  EXPECT_EQ(device.state_hash(), cpu.state_hash());
+  ASSERT_TRUE(device.set_engine(make_device()).ok());
+  EXPECT_EQ(device.advance(steps).device_steps, steps);
+  cpu.advance(steps);
+  EXPECT_LT(difference(device, cpu), tolerance);
+  Simulation back = Simulation::from(device.snapshot());
+  EXPECT_EQ(back.state_hash(), device.state_hash());
+  EXPECT_EQ(back.advance(steps).device_steps, 0U);
+  device.advance(steps);
+  EXPECT_LT(difference(back, device), tolerance);
+}
+
+/// Expects that the device has its state before a call if a step of the call fails. The first
+/// `good` steps succeed, and one of the next `bad` steps fails.
+inline void expect_restored_state(const Scene& scene, std::uint32_t good, std::uint32_t bad) {
+  Simulation device = make_on_device(scene);
+  EXPECT_EQ(device.advance(good).device_steps, good);
+  Simulation twin = make_on_device(scene);
+  twin.advance(good);
+  Simulation cpu = Simulation::from(twin.snapshot());
+  const AdvanceReport report = device.advance(bad);
+  const AdvanceReport expected = cpu.advance(bad);
+  EXPECT_EQ(report.device_steps, 0U);
+  EXPECT_EQ(report.steps, expected.steps);
+  EXPECT_EQ(report.least_step, expected.least_step);
+  EXPECT_EQ(device.state_hash(), cpu.state_hash());
+}
+
 /// Expects that the device refuses each scene. The name of a case is the path of the error.
 inline void expect_refusals(const Scene& common, std::span<const SceneCase> cases) {
   for (const SceneCase& one : cases) {
