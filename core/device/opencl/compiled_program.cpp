@@ -11,14 +11,15 @@ CompiledProgram::~CompiledProgram() {
   if (context_ != nullptr) api_.release_context(context_);
 }
 
-Status CompiledProgram::build(const char* source, const std::string& options) {
+Status CompiledProgram::build(const std::string& source, const std::string& options) {
   const auto failed = [&](const std::string& what) {
     return Error{"device_failed", "/device", device_.name + " (" + device_.driver + "): " + what};
   };
   cl_int code = CL_SUCCESS;
   context_ = api_.create_context(nullptr, 1, &device_.id, nullptr, nullptr, &code);
   if (code != CL_SUCCESS) return failed("no context, OpenCL error " + std::to_string(code));
-  program_ = api_.create_program(context_, 1, &source, nullptr, &code);
+  const char* text = source.c_str();
+  program_ = api_.create_program(context_, 1, &text, nullptr, &code);
   if (code != CL_SUCCESS) return failed("no program, OpenCL error " + std::to_string(code));
   code = api_.build_program(program_, 1, &device_.id, options.c_str(), nullptr, nullptr);
   if (code == CL_SUCCESS) return {};
@@ -32,7 +33,8 @@ Status CompiledProgram::build(const char* source, const std::string& options) {
 /// The programs of the process, in the order of their last use.
 class CompiledPrograms {
  public:
-  Result<std::shared_ptr<const CompiledProgram>> find(const Device& device, const char* source,
+  Result<std::shared_ptr<const CompiledProgram>> find(const Device& device,
+                                                      const std::string& source,
                                                       const std::string& options) {
     const std::lock_guard lock(mutex_);
     const auto found = std::ranges::find_if(programs_, [&](const Entry& entry) {
@@ -64,7 +66,7 @@ class CompiledPrograms {
 };
 
 Result<std::shared_ptr<const CompiledProgram>> compile_once(const Device& device,
-                                                            const char* source,
+                                                            const std::string& source,
                                                             const std::string& options) {
   // Never destroyed: at the end of the process, the OpenCL library may be unusable.
   static CompiledPrograms& programs = *new CompiledPrograms;

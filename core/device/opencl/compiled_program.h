@@ -22,7 +22,7 @@ class CompiledProgram {
   friend class CompiledPrograms;
 
   CompiledProgram(const Api& api, Device device) : api_(api), device_(std::move(device)) {}
-  Status build(const char* source, const std::string& options);
+  Status build(const std::string& source, const std::string& options);
 
   const Api& api_;
   Device device_;
@@ -37,7 +37,7 @@ inline constexpr std::size_t kKeptPrograms = 8;
 /// keeps the kKeptPrograms programs that were used last. Other threads wait for a compilation.
 /// Fails with the code "device_failed", the name of the driver and the log of its compiler.
 Result<std::shared_ptr<const CompiledProgram>> compile_once(const Device& device,
-                                                            const char* source,
+                                                            const std::string& source,
                                                             const std::string& options);
 
 }  // namespace vat::opencl

@@ -22,7 +22,7 @@ Buffer::~Buffer() {
   if (memory_ != nullptr) program_->api_.release_buffer(memory_);
 }
 
-Result<std::unique_ptr<Program>> Program::create(const Device& device, const char* source,
+Result<std::unique_ptr<Program>> Program::create(const Device& device, const std::string& source,
                                                  const std::string& options) {
   const Result<const Api*> api = load_api();
   if (!api) return api.errors();

@@ -46,7 +46,7 @@ class Buffer {
 class Program {
  public:
   /// Creates a queue and kernels of the program of compile_once(). Fails like compile_once().
-  static Result<std::unique_ptr<Program>> create(const Device& device, const char* source,
+  static Result<std::unique_ptr<Program>> create(const Device& device, const std::string& source,
                                                  const std::string& options);
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
