@@ -25,7 +25,7 @@ class Missing {
   void check_bodies();
   void check_world();
   void check_liquid();
-  void check_deformable();
+  void check_solids();
   Errors take() && { return std::move(errors_); }
   bool any() const { return !errors_.empty(); }
 
@@ -48,8 +48,8 @@ void Missing::check_body(std::size_t index) {
   const bool is_fixed = body.kind == BodyKind::rigid && body.fixed;
   reject(has_liquid && body.kind != BodyKind::liquid && !is_fixed, path + "/kind",
          "must be liquid, or rigid and fixed, in a scene with a liquid");
-  reject(!has_liquid && body.kind != BodyKind::deformable && !is_fixed, path + "/kind",
-         "must be deformable, or rigid and fixed, in a scene without a liquid");
+  reject(!has_liquid && body.kind == BodyKind::liquid, path + "/kind",
+         "must be deformable or rigid in a scene whose liquids have no particles");
   if (body.kind == BodyKind::liquid && has_liquid) {
     reject(model_.bodies[index].material != model_.material[0], path + "/material",
            "must be the material of the other liquids");
@@ -57,12 +57,16 @@ void Missing::check_body(std::size_t index) {
   reject(body.melting.has_value(), path + "/melting", "must be absent");
   if (body.kind != BodyKind::rigid) return;
   reject(body.motion.has_value(), path + "/motion", "must be absent");
-  reject(!body.velocity.isZero(0), path + "/velocity", "must be 0");
-  reject(!body.angular_velocity.isZero(0), path + "/angular_velocity", "must be 0");
+  reject(body.axle.has_value(), path + "/axle", "must be absent");
+  reject(body.release > 0 && !body.fixed, path + "/release", "must be 0");
+  if (!body.fixed) return;
+  reject(!body.velocity.isZero(0), path + "/velocity", "must be 0 for a fixed body");
+  reject(!body.angular_velocity.isZero(0), path + "/angular_velocity",
+         "must be 0 for a fixed body");
 }
 
 void Missing::check_bodies() {
-  reject(model_.free_count == 0, "/bodies", "must contain a liquid or a deformable body");
+  reject(model_.particle_count == 0, "/bodies", "must contain a body");
   for (std::size_t b = 0; b < scene_.bodies.size(); ++b) check_body(b);
 }
 
@@ -102,7 +106,7 @@ void Missing::check_laws() {
   reject(model_.has_restitution, path, "must have a damping in place of a restitution");
 }
 
-void Missing::check_deformable() {
+void Missing::check_solids() {
   reject(scene_.numerics.integrator != IntegratorId::velocity_verlet, "/numerics/integrator",
          "must be velocity_verlet");
   reject(scene_.numerics.control != StepControl::fixed, "/numerics/control", "must be fixed");
@@ -124,7 +128,7 @@ Errors find_features_not_on_device(const Model& model) {
   missing.check_bodies();
   if (missing.any()) return std::move(missing).take();
   missing.check_world();
-  model.liquid_count > 0 ? missing.check_liquid() : missing.check_deformable();
+  model.liquid_count > 0 ? missing.check_liquid() : missing.check_solids();
   return std::move(missing).take();
 }
 

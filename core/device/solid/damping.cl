@@ -73,35 +73,40 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void open_damping(
   progress->is_open = needs_iteration(&damping, progress);
 }
 
-// Computes D times the direction, and <d, (M - dt D) d>.
+// Computes D times the direction, and <d, (M - dt D) d> of free particles.
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multiply_damping(
     const Solids p, const Damping damping, global const DampingProgress* progress,
     global const int* begins, global const int* order, global const double4* sorted_position,
     global const double* position, global const double* predicted, global const double* direction,
-    global const double* mass, global const double* radius, global const int* body_of,
-    global const Body* bodies, global const ContactLaw* laws,
-    global const uint* exclusion_begin, global const uint* exclusions,
-    global const uint* spring_begin, global const SpringEnd* springs, global double* multiplied,
+    global const double* spins, global const double* spin_changes, global const double* mass,
+    global const double* radius, global const int* body_of, global const Body* bodies,
+    global const ContactLaw* laws, global const uint* exclusion_begin,
+    global const uint* exclusions, global const uint* spring_begin,
+    global const SpringEnd* springs, global double* multiplied, global double* torque,
     global double4* partial) {
   local double4 sums[GROUP];
   if (!progress->is_open) return;
   const int slot = get_global_id(0);
   double4 own = 0;
-  if (slot < p.count && order[slot] < p.free) {
+  if (slot < p.count) {
     const int i = order[slot];
-    Target t = {i, body_of[i], 1, mass[i], radius[i], sorted_position[slot].xyz,
-                vector_at(predicted, i), vector_at(direction, i), (double3)(0), 0, 0};
+    Target t =
+        target_at(&p, i, sorted_position[slot].xyz, predicted, spins, mass, radius, body_of);
+    t.is_change = 1;
+    t.w = vector_at(direction, i);
+    t.spin_change = vector_at(spin_changes, t.body);
     if (p.reach > 0) {
-      add_contacts(&p, begins, order, sorted_position, predicted, direction, mass, radius, body_of,
-                   bodies, laws, exclusion_begin, exclusions, &t);
+      add_contacts(&p, begins, order, sorted_position, predicted, direction, spins, spin_changes,
+                   mass, radius, body_of, bodies, laws, exclusion_begin, exclusions, &t);
     }
-    add_springs(&p, spring_begin, springs, position, direction, &t);
+    if (i < p.free) add_springs(&p, spring_begin, springs, position, direction, &t);
     if (p.walls_push) {
       const int of_wall = p.materials * p.materials + p.materials + bodies[t.body].material;
       add_walls(&p, laws[of_wall], &t);
     }
     store_vector(t.force, multiplied, i);
-    own.x = product(t.w, t.mass * t.w - damping.dt * t.force);
+    store_vector(t.torque, torque, i);
+    if (i < p.free) own.x = product(t.w, t.mass * t.w - damping.dt * t.force);
   }
   write_partial(sums, own, partial);
 }

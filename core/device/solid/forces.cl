@@ -1,4 +1,4 @@
-// Forces on particles of deformable bodies: springs, cells with a bulk modulus, contacts, and walls.
+// Forces on particles of deformable and rigid bodies: springs, cells with a bulk modulus, contacts, and walls.
 // Each particle sums its forces in a fixed order: contacts in the order of cells, and springs in
 // the order of their other ends.
 
@@ -29,12 +29,16 @@ typedef struct {
   int index;
   int body;
   int is_change;
+  int is_rigid;
   double mass;
   double radius;
   double3 x;
   double3 v;
   double3 w;
+  double3 spin;
+  double3 spin_change;
   double3 force;
+  double3 torque;
   double stiffness;
   double damping;
 } Target;
@@ -65,28 +69,59 @@ double friction_drag(double coefficient, double sticking, double push, double3 s
   return sticking * speed > limit ? limit / speed : sticking;
 }
 
-// Adds the contact with the particle j at the distance r, with the velocity v and its change w; see
-// add_contacts().
-void add_contact(const Solids* p, ContactLaw law, int j, double3 x, double r, double threshold,
-                 double3 v, double3 w, double mass, Target* t) {
-  const double3 n = direction_of(x, r, t->index, j, p->dimensions);
-  const double3 relative = t->v - v;
+// The other particle of a contact. `w` and `spin_change` are 0 if the target's is_change is not set.
+typedef struct {
+  int index;
+  int is_rigid;
+  double mass;
+  double radius;
+  double3 v;
+  double3 w;
+  double3 spin;
+  double3 spin_change;
+} Other;
+
+// Vectors from the centres of two particles to their friction point, see contact_arms().
+typedef struct {
+  double3 mine;
+  double3 its;
+} Arms;
+
+Arms arms_of(const Target* t, const Other* o, double3 way) {
+  Arms arms = {(double3)(0), (double3)(0)};
+  if (!t->is_rigid && !o->is_rigid) return arms;
+  const double own = !t->is_rigid ? 0 : o->is_rigid ? t->radius / (t->radius + o->radius) : 1;
+  arms.mine = -own * way;
+  arms.its = (1 - own) * way;
+  return arms;
+}
+
+double3 across(double3 v, double3 n) {
+  return v - product(v, n) * n;
+}
+
+// Adds the contact with another particle at the distance r; see add_contacts().
+void add_contact(const Solids* p, ContactLaw law, const Other* o, double3 x, double r,
+                 double threshold, Target* t) {
+  const double3 n = direction_of(x, r, t->index, o->index, p->dimensions);
+  const double3 relative = t->v - o->v;
   const double speed = product(relative, n);
   const double push = law.stiffness * (threshold - r) - law.damping * speed;
   if (push <= 0) return;
+  t->force +=
+      t->is_change ? -(law.damping * product(t->w - o->w, n)) * n : push * n;
   double sticking = 0;
-  double drag = 0;
-  const double3 slip = relative - speed * n;
   if (law.friction > 0) {
-    sticking = sqrt(law.stiffness * (t->mass * mass / (t->mass + mass)));
-    drag = friction_drag(law.friction, sticking, push, slip);
-  }
-  if (t->is_change) {
-    const double3 change = t->w - w;
-    const double along = product(change, n);
-    t->force -= (law.damping * along) * n + drag * (change - along * n);
-  } else {
-    t->force += push * n - drag * slip;
+    sticking = sqrt(law.stiffness * (t->mass * o->mass / (t->mass + o->mass)));
+    const Arms arms = arms_of(t, o, r * n);
+    const double3 slip = relative - speed * n + cross_product(t->spin, arms.mine) -
+                         cross_product(o->spin, arms.its);
+    const double drag = friction_drag(law.friction, sticking, push, slip);
+    const double3 change = t->w - o->w + cross_product(t->spin_change, arms.mine) -
+                           cross_product(o->spin_change, arms.its);
+    const double3 friction = -drag * (t->is_change ? across(change, n) : slip);
+    t->force += friction;
+    t->torque += cross_product(arms.mine, friction);
   }
   t->stiffness += 2 * law.stiffness;
   t->damping += 2 * fmax(law.damping, sticking);
@@ -110,7 +145,8 @@ bool is_excluded(global const uint* begins, global const uint* excluded, int i, 
 // Adds the contacts with the particles in the cells around the target.
 void add_contacts(const Solids* p, global const int* begins, global const int* order,
                   global const double4* sorted_position, global const double* predicted,
-                  global const double* change, global const double* mass, global const double* radius,
+                  global const double* change, global const double* spins,
+                  global const double* spin_changes, global const double* mass, global const double* radius,
                   global const int* body_of, global const Body* bodies,
                   global const ContactLaw* laws, global const uint* exclusion_begin,
                   global const uint* exclusions, Target* t) {
@@ -131,9 +167,10 @@ void add_contacts(const Solids* p, global const int* begins, global const int* o
         const double square = product(x, x);
         if (!(square < p->reach * p->reach)) continue;
         const int j = order[slot];
-        const bool is_own = body_of[j] == t->body;
+        const int body = body_of[j];
+        const bool is_own = body == t->body;
         if (j == t->index || (is_own && !mine.touches_itself)) continue;
-        const int other = bodies[body_of[j]].material;
+        const int other = bodies[body].material;
         // The laws within bodies follow those between materials.
         const ContactLaw law =
             laws[is_own ? p->materials * p->materials + mine.material
@@ -142,10 +179,11 @@ void add_contacts(const Solids* p, global const int* begins, global const int* o
         const double threshold = law.threshold > 0 ? law.threshold : touching;
         if (!(square < threshold * threshold)) continue;
         if (is_own && is_excluded(exclusion_begin, exclusions, t->index, j)) continue;
-        const bool is_free = j < p->free;
-        const double3 v = is_free ? vector_at(predicted, j) : (double3)(0, 0, 0);
-        const double3 w = is_free && t->is_change ? vector_at(change, j) : (double3)(0, 0, 0);
-        add_contact(p, law, j, x, sqrt(square), threshold, v, w, mass[j], t);
+        const double3 zero = 0;
+        const Other o = {j, j >= p->free, mass[j], radius[j], vector_at(predicted, j),
+                         t->is_change ? vector_at(change, j) : zero, vector_at(spins, body),
+                         t->is_change ? vector_at(spin_changes, body) : zero};
+        add_contact(p, law, &o, x, sqrt(square), threshold, t);
       }
     }
   }
@@ -258,7 +296,6 @@ void add_walls(const Solids* p, ContactLaw law, Target* t) {
   const double at[3] = {t->x.x, t->x.y, t->x.z};
   const double v[3] = {t->v.x, t->v.y, t->v.z};
   const double w[3] = {t->w.x, t->w.y, t->w.z};
-  double force[3] = {0, 0, 0};
   int count = 0;
   for (int wall = 0; wall < 6; ++wall) {
     const int axis = wall / 2;
@@ -266,24 +303,25 @@ void add_walls(const Solids* p, ContactLaw law, Target* t) {
     const double distance = distance_from_wall(p, wall, at[axis]);
     if (distance >= threshold) continue;
     const double side = wall % 2 == 0 ? 1 : -1;
+    const double3 n = (double3)(axis == 0 ? side : 0, axis == 1 ? side : 0, axis == 2 ? side : 0);
     const double speed = side * (v[axis] - p->wall_velocity[axis]);
     const double push = law.stiffness * (threshold - distance) - law.damping * speed;
     if (push <= 0) continue;
-    force[axis] += t->is_change ? -law.damping * w[axis] : side * push;
     ++count;
+    t->force += (t->is_change ? -law.damping * side * w[axis] : push) * n;
     if (!(law.friction > 0)) continue;
-    double slip[3];
-    for (int k = 0; k < 3; ++k) {
-      slip[k] = k == axis ? 0 : v[k] - p->wall_velocity[k] - p->speeds_of_walls[3 * wall + k];
-    }
-    const double drag =
-        friction_drag(law.friction, sticking, push, (double3)(slip[0], slip[1], slip[2]));
-    for (int k = 0; k < 3; ++k) {
-      force[k] -= drag * (!t->is_change ? slip[k] : k == axis ? 0 : w[k]);
-    }
+    const double3 arm = t->is_rigid ? -distance * n : (double3)(0);
+    const double* belt = p->speeds_of_walls + 3 * wall;
+    const double3 of_wall = (double3)(p->wall_velocity[0] + belt[0], p->wall_velocity[1] + belt[1],
+                                      p->wall_velocity[2] + belt[2]);
+    const double3 slip = across(t->v + cross_product(t->spin, arm) - of_wall, n);
+    const double drag = friction_drag(law.friction, sticking, push, slip);
+    const double3 change = t->w + cross_product(t->spin_change, arm);
+    const double3 friction = -drag * (t->is_change ? across(change, n) : slip);
+    t->force += friction;
+    t->torque += cross_product(arm, friction);
   }
   if (count == 0) return;
-  t->force += (double3)(force[0], force[1], force[2]);
   t->stiffness += law.stiffness;
   t->damping += fmax(law.damping, sticking) + (count - 1) * sticking;
 }
@@ -306,49 +344,67 @@ double2 bound_of(const Target* t, double mobility, Body body) {
   return (double2)(body.omega2 + mobility * t->stiffness, body.rate + mobility * t->damping);
 }
 
-// The forces in the order of particles. `partial` receives the greatest bounds of the groups.
+// A target without forces.
+Target target_at(const Solids* p, int i, double3 x, global const double* predicted,
+                 global const double* spins, global const double* mass,
+                 global const double* radius, global const int* body_of) {
+  const double3 zero = 0;
+  const Target t = {i,    body_of[i], 0,    i >= p->free, mass[i], radius[i], x,
+                    vector_at(predicted, i), zero, vector_at(spins, body_of[i]), zero, zero, zero, 0, 0};
+  return t;
+}
+
+// The forces in the order of particles, and the torques of friction. `loads` receives the loads of
+// the contacts, and `partial` the greatest bounds of free particles in groups.
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_solid_forces(
     const Solids p, global const int* begins, global const int* order,
     global const double4* sorted_position, global const double* position,
-    global const double* predicted, global const double* mass, global const double* mobility,
-    global const double* radius, global const int* body_of, global const Body* bodies,
-    global const ContactLaw* laws, global const uint* exclusion_begin,
-    global const uint* exclusions, global const uint* spring_begin,
-    global const SpringEnd* springs, global const uint* cell_begin, global const uint2* corners,
-    global const VolumeCell* cells, global const double* pressure, global double* force,
-    global double2* partial) {
+    global const double* predicted, global const double* spins, global const double* mass,
+    global const double* mobility, global const double* radius, global const int* body_of,
+    global const Body* bodies, global const ContactLaw* laws,
+    global const uint* exclusion_begin, global const uint* exclusions,
+    global const uint* spring_begin, global const SpringEnd* springs,
+    global const uint* cell_begin, global const uint2* corners, global const VolumeCell* cells,
+    global const double* pressure, global double* force, global double* torque,
+    global double2* loads, global double2* partial) {
   local double2 bounds[GROUP];
   const int slot = get_global_id(0);
   double2 own = 0;
-  if (slot < p.count && order[slot] < p.free) {
+  if (slot < p.count) {
     const int i = order[slot];
-    Target t = {i, body_of[i], 0, mass[i], radius[i], sorted_position[slot].xyz,
-                vector_at(predicted, i), (double3)(0), (double3)(0), 0, 0};
+    Target t =
+        target_at(&p, i, sorted_position[slot].xyz, predicted, spins, mass, radius, body_of);
     const Body body = bodies[t.body];
     t.force = t.mass * (double3)(p.gravity[0], p.gravity[1], p.gravity[2]);
     if (p.reach > 0) {
-      add_contacts(&p, begins, order, sorted_position, predicted, predicted, mass, radius, body_of,
-                   bodies, laws, exclusion_begin, exclusions, &t);
+      add_contacts(&p, begins, order, sorted_position, predicted, predicted, spins, spins, mass,
+                   radius, body_of, bodies, laws, exclusion_begin, exclusions, &t);
     }
-    add_springs(&p, spring_begin, springs, position, predicted, &t);
-    add_cells(&p, cell_begin, corners, cells, pressure, position, &t);
+    if (i < p.free) {
+      add_springs(&p, spring_begin, springs, position, predicted, &t);
+      add_cells(&p, cell_begin, corners, cells, pressure, position, &t);
+    }
     if (p.walls_push) {
       const int of_wall = p.materials * p.materials + p.materials + body.material;
       add_walls(&p, laws[of_wall], &t);
     }
     store_vector(t.force, force, i);
-    own = bound_of(&t, mobility[i], body);
+    store_vector(t.torque, torque, i);
+    loads[i] = (double2)(t.stiffness, t.damping);
+    if (i < p.free) own = bound_of(&t, mobility[i], body);
   }
   const double2 greatest = greatest_of_group(bounds, own);
   if (get_local_id(0) == 0) partial[get_group_id(0)] = greatest;
 }
 
-// The greatest bound of all groups, and at least `least`.
+// The greatest bound of all groups and rigid bodies, and at least `least`.
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_bound_of_forces(
-    const int groups, const double2 least, global const double2* partial, global double2* bound) {
+    const int groups, const int bodies, const double2 least, global const double2* partial,
+    global const double2* of_bodies, global double2* bound) {
   local double2 bounds[GROUP];
   double2 own = least;
   for (int n = get_local_id(0); n < groups; n += GROUP) own = fmax(own, partial[n]);
+  for (int b = get_local_id(0); b < bodies; b += GROUP) own = fmax(own, of_bodies[b]);
   const double2 greatest = greatest_of_group(bounds, own);
   if (get_local_id(0) == 0) *bound = greatest;
 }

@@ -1,6 +1,5 @@
-// Particles of deformable bodies and of fixed rigid bodies: parameters, steps, and cells. One
-// work-item computes one particle. All numbers are in double precision. Free particles precede fixed
-// ones.
+// Particles of deformable and rigid bodies: parameters, steps, and cells. One work-item computes one
+// particle. All numbers are in double precision. Free particles precede those of rigid bodies.
 
 typedef struct {
   double origin[3];

@@ -38,7 +38,7 @@ void SolidGeometry::set_grid(const Model& model) {
 }
 
 SolidGeometry::SolidGeometry(const Model& model, const GuardBounds& bounds) {
-  VAT_CHECK(model.liquid_count == 0 && model.free_count > 0);
+  VAT_CHECK(model.liquid_count == 0 && model.particle_count > 0);
   set_grid(model);
   const Scene& scene = model.scene;
   store(scene.forces.gravity ? scene.gravity : Vec3(Vec3::Zero()), constant_.gravity);

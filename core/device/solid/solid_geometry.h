@@ -37,7 +37,7 @@ struct SolidParameters {
   std::int32_t dimensions;
 };
 
-/// Computes the parameters of kernels for a model of deformable and fixed rigid bodies.
+/// Computes the parameters of kernels for a model of deformable and rigid bodies.
 class SolidGeometry {
  public:
   SolidGeometry(const Model& model, const GuardBounds& bounds);

@@ -6,7 +6,7 @@
 
 namespace vat {
 
-/// The constants of deformable bodies and of fixed rigid bodies on a device: particles, bodies,
+/// The constants of deformable and rigid bodies on a device: particles, bodies,
 /// contact laws, springs and cells. Throws opencl::DeviceFailure.
 class SolidTables {
  public:

@@ -102,13 +102,6 @@ const SceneCase kScenes[] = {
      }},
 };
 
-/// Returns the relative rounding error of a state after `steps` steps. The order of sums differs,
-/// so that each step adds about ten units in the last place. Contacts double the error a few times.
-Real rounding_after(std::uint32_t steps) {
-  constexpr Real kGrowth = 1000;
-  return kGrowth * 10 * static_cast<Real>(steps) * 0x1p-53;
-}
-
 // The device and the CPU compute in double precision, and differ by rounding only.
 TEST(DeformableDevice, HasTheMotionOfTheCpu) {
   constexpr std::uint32_t kSteps = 120;
@@ -118,19 +111,11 @@ TEST(DeformableDevice, HasTheMotionOfTheCpu) {
     SCOPED_TRACE(one.name);
     Scene scene = make_blocks();
     one.edit(scene);
-    Simulation device = make_on_device(scene);
+    expect_motion_of_cpu(scene, kSteps);
     Simulation cpu = make_simulation(scene);
-    const AdvanceReport report = device.advance(kSteps);
-    const AdvanceReport expected = cpu.advance(kSteps);
-    EXPECT_EQ(report.device_steps, kSteps);
-    EXPECT_EQ(report.steps, expected.steps);
-    EXPECT_EQ(report.force_evaluations, expected.force_evaluations);
-    EXPECT_EQ(report.wall_stops, expected.wall_stops);
-    EXPECT_EQ(report.iterations.damping, expected.iterations.damping);
-    EXPECT_EQ(expected.undone_steps, 0U);
-    EXPECT_LT(difference(device, cpu), rounding_after(kSteps));
-    if (device.bodies().size() == 2) {
-      EXPECT_GT(difference(device, usual), 1e-4) << "the change has an effect";
+    cpu.advance(kSteps);
+    if (cpu.bodies().size() == 2) {
+      EXPECT_GT(difference(cpu, usual), 1e-4) << "the change has an effect";
     }
   }
 }
@@ -307,7 +292,6 @@ TEST(DeformableDevice, SolvesForStrongDamping) {
 
 TEST(DeformableDevice, RefusesFeaturesThatItLacks) {
   const SceneCase cases[] = {
-      {"/bodies/1/kind", [](Scene& s) { s.bodies[1].kind = BodyKind::rigid; }},
       {"/numerics/integrator",
        [](Scene& s) { s.numerics.integrator = IntegratorId::symplectic_euler; }},
       {"/numerics/control", [](Scene& s) { s.numerics.control = StepControl::adaptive; }},
