@@ -127,7 +127,7 @@ TEST(DeformableDevice, SeparatesTheParticlesOfABody) {
   device.advance(120);
   const std::span<const Vec3> positions = device.bodies()[0].positions;
   // The contact springs are longer than the gap between the pairs, but do not act within a pair.
-  EXPECT_GT((positions[2] - positions[1]).norm(), kSpacing);
+  EXPECT_GT(positions[2].x() - positions[1].x(), kSpacing);
   EXPECT_LT((positions[1] - positions[0]).norm(), 0.8 * kSpacing);
 }
 
