@@ -6,8 +6,9 @@
 #include "protocol/json/json_reader.h"
 #include "tests/bench/report/table.h"
 
-/// The tables of core/ACCURACY.md, core/device/DEVICE.md and server/RELIABILITY.md, from the JSON results of the other
-/// commands. The functions throw nlohmann::json::exception if a row lacks a column.
+/// The tables of core/ACCURACY.md, core/device/DEVICE.md and server/RELIABILITY.md, from the JSON
+/// results of the other commands. The functions throw nlohmann::json::exception if a row lacks a
+/// column.
 namespace vat::bench {
 
 /// Returns one row per case: the metric that uses most of its tolerance, and the number of all
