@@ -11,11 +11,6 @@
 namespace vat {
 namespace {
 
-// The tolerances of the error of w, in the norm of M.
-constexpr Real kTolerance = 1e-2;          // relative to v - from
-constexpr Real kVelocityTolerance = 3e-4;  // relative to the velocities minus their mean
-constexpr int kMaxDampingPasses = 200;
-
 /// The constants of the solve.
 struct Equation {
   const StepContext& context;
@@ -220,14 +215,15 @@ Real permitted_error(const Equation& eq) {
     const DampedBody& body = eq.scratch.bodies[b];
     if (body.inverse_mass > 0) add(total, body.mass, at.rigid[b].momentum * body.inverse_mass);
   }
-  return kVelocityTolerance * kVelocityTolerance * total.spread();
+  return kDampingVelocityTolerance * kDampingVelocityTolerance * total.spread();
 }
 
 /// Conjugate gradients from w = 0, preconditioned with M. Returns the number of products.
 int iterate(const Equation& eq, DampingSums sums) {
   const Real permitted = permitted_error(eq);
   for (int iteration = 0; iteration < kMaxDampingPasses; ++iteration) {
-    if (!(sums.error > std::max(kTolerance * kTolerance * sums.size, permitted))) return iteration;
+    if (!(sums.error > std::max(kDampingTolerance * kDampingTolerance * sums.size, permitted)))
+      return iteration;
     apply_damping(eq, eq.scratch.direction, eq.scratch.product);
     const Real curvature = curvature_along(eq);
     if (!(curvature > 0)) return iteration + 1;  // too small for the precision of numbers

@@ -51,6 +51,11 @@ struct MomentSums {
   Real spread() const { return mass > 0 ? square - momentum.squaredNorm() / mass : 0; }
 };
 
+/// Tolerances of the error of w in solve_damping(), in the norm of M.
+inline constexpr Real kDampingTolerance = 1e-2;          ///< relative to v - from
+inline constexpr Real kDampingVelocityTolerance = 3e-4;  ///< relative to velocities minus mean
+inline constexpr int kMaxDampingPasses = 200;
+
 /// Buffers of solve_damping().
 struct DampingScratch {
   DampingMatrix matrix;
@@ -82,11 +87,10 @@ bool must_solve_damping(const Oscillation& bound, Real dt);
 /// - at)). The forces f were evaluated at `at`, with velocities close to v. `from` has the
 /// velocities before the forces act. `dt` is the duration of the action [s]: half a step for
 /// velocity Verlet, a whole step for symplectic Euler. The equation is linear in w = v - at, and is
-/// solved by conjugate gradients. The iterations end if the error of w, in the norm of M, is below
-/// 1 % of v - from, or below 3e-4 of the velocities relative to their mean. D w is a sum of equal
-/// and opposite forces, so that momentum is conserved after any number of iterations. Requires the
-/// dampers of an evaluation with Scratch::keep_dampers. Rigid bodies must have the same motion in
-/// `at` and `from`.
+/// solved by conjugate gradients. The iterations end if the error of w meets one of the tolerances,
+/// or after kMaxDampingPasses. D w is a sum of equal and opposite forces, so that momentum is
+/// conserved after any number of iterations. Requires the dampers of an evaluation with
+/// Scratch::keep_dampers. Rigid bodies must have the same motion in `at` and `from`.
 void solve_damping(const ForceModel& force_model, const Configuration& from, Configuration& at,
                    Real time, Real dt, bool viscosity, Forces& forces, DampingScratch& scratch);
 

@@ -5,6 +5,7 @@
 #include "core/device/incompressible/incompressible_method.h"
 #include "core/device/kernel_source.h"
 #include "core/device/opencl/program.h"
+#include "core/device/solid/solid_method.h"
 #include "core/device/supported.h"
 #include "core/device/tait/tait_method.h"
 #include "core/support/check.h"
@@ -17,6 +18,18 @@ using opencl::Program;
 
 Error failed(const std::string& message) {
   return {"device_failed", "/device", message};
+}
+
+/// The steps of one kind of scenes.
+struct MethodKind {
+  std::size_t (*bytes_for)(const Model& model);
+  std::unique_ptr<DeviceMethod> (*make)(Program& program, std::shared_ptr<const Model> model);
+};
+
+MethodKind kind_of(const Model& model) {
+  if (model.liquid_count == 0) return {&bytes_for_solids, &make_solid_method};
+  if (model.is_incompressible) return {&bytes_for_incompressible, &make_incompressible_method};
+  return {&bytes_for_tait, &make_tait_method};
 }
 
 class DeviceEngine : public StepEngine {
@@ -39,17 +52,15 @@ Status DeviceEngine::bind(std::shared_ptr<const Model> model) {
   method_.reset();  // before the allocation of new buffers
   Errors missing = find_features_not_on_device(*model);
   if (!missing.empty()) return missing;
-  const LiquidGeometry geometry(*model, guard_bounds(*model));
-  const std::size_t bytes = model->is_incompressible ? bytes_for_incompressible(*model, geometry)
-                                                     : bytes_for_tait(*model, geometry);
+  const MethodKind kind = kind_of(*model);
+  const std::size_t bytes = kind.bytes_for(*model);
   const opencl::Device& device = program_->device();
   if (bytes > device.memory) {
     return failed("the scene needs " + std::to_string(bytes) + " bytes on the device; " +
                   device.name + " has " + std::to_string(device.memory));
   }
-  const auto make = model->is_incompressible ? &make_incompressible_method : &make_tait_method;
   try {
-    method_ = make(*program_, std::move(model), geometry);
+    method_ = kind.make(*program_, std::move(model));
   } catch (const DeviceFailure& failure) {
     return failed(failure.what());
   }
@@ -88,7 +99,7 @@ Result<std::unique_ptr<StepEngine>> make_device_engine(const opencl::Device& dev
     }
     options += " -DVAT_EXACT -cl-fp32-correctly-rounded-divide-sqrt";
   }
-  Result<std::unique_ptr<Program>> program = Program::create(device, kDeviceKernels, options);
+  Result<std::unique_ptr<Program>> program = Program::create(device, device_kernels(), options);
   if (!program) return program.errors();
   return std::unique_ptr<StepEngine>(new DeviceEngine(std::move(program).value(), arithmetic));
 }

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <string>
+
 namespace vat {
 
-/// The OpenCL C sources of the folders of core/device, in the order of core/CMakeLists.txt.
-extern const char* const kDeviceKernels;
+/// Returns the OpenCL C sources of the folders of core/device, in the order of core/CMakeLists.txt.
+std::string device_kernels();
 
 }  // namespace vat

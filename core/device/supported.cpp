@@ -1,63 +1,135 @@
 #include "core/device/supported.h"
 
-#include <algorithm>
+#include <string>
+#include <utility>
 
 #include "core/damping/damping_solve.h"
+#include "core/device/incompressible/device_step_control.h"
 
 namespace vat {
+namespace {
+
+/// Returns whether a step can be too long for explicit viscosity.
+bool may_solve_viscosity(const Model& model) {
+  const Numerics& numerics = model.scene.numerics;
+  if (!model.is_incompressible) return must_solve_viscosity(model, numerics.step);
+  const bool is_adaptive = numerics.control == StepControl::adaptive;
+  return must_solve_own_damping(model, is_adaptive ? longest_adaptive_step(model) : numerics.step);
+}
+
+/// Collects the errors of a scene.
+class Missing {
+ public:
+  explicit Missing(const Model& model) : model_(model) {}
+
+  void check_bodies();
+  void check_world();
+  void check_liquid();
+  void check_solids();
+  Errors take() && { return std::move(errors_); }
+  bool any() const { return !errors_.empty(); }
+
+ private:
+  void reject(bool is_used, const std::string& path, const std::string& message) {
+    if (is_used) errors_.push_back({"not_on_device", path, message + " on a device"});
+  }
+  void check_body(std::size_t index);
+  void check_laws();
+
+  const Model& model_;
+  const Scene& scene_ = model_.scene;
+  Errors errors_;
+};
+
+void Missing::check_body(std::size_t index) {
+  const BodyDescription& body = scene_.bodies[index];
+  const std::string path = "/bodies/" + std::to_string(index);
+  const bool has_liquid = model_.liquid_count > 0;
+  const bool is_fixed = body.kind == BodyKind::rigid && body.fixed;
+  reject(has_liquid && body.kind != BodyKind::liquid && !is_fixed, path + "/kind",
+         "must be liquid, or rigid and fixed, in a scene with a liquid");
+  reject(!has_liquid && body.kind == BodyKind::liquid, path + "/kind",
+         "must be deformable or rigid in a scene whose liquids have no particles");
+  if (body.kind == BodyKind::liquid && has_liquid) {
+    reject(model_.bodies[index].material != model_.material[0], path + "/material",
+           "must be the material of the other liquids");
+  }
+  reject(body.melting.has_value(), path + "/melting", "must be absent");
+  if (body.kind != BodyKind::rigid) return;
+  reject(body.motion.has_value(), path + "/motion", "must be absent");
+  reject(body.axle.has_value(), path + "/axle", "must be absent");
+  reject(body.release > 0 && !body.fixed, path + "/release", "must be 0");
+  if (!body.fixed) return;
+  reject(!body.velocity.isZero(0), path + "/velocity", "must be 0 for a fixed body");
+  reject(!body.angular_velocity.isZero(0), path + "/angular_velocity",
+         "must be 0 for a fixed body");
+}
+
+void Missing::check_bodies() {
+  reject(model_.particle_count == 0, "/bodies", "must contain a body");
+  for (std::size_t b = 0; b < scene_.bodies.size(); ++b) check_body(b);
+}
+
+void Missing::check_world() {
+  reject(!scene_.emitters.empty(), "/emitters", "must be empty");
+  reject(!scene_.drains.empty(), "/drains", "must be empty");
+  reject(model_.periodic.any(), "/periodic", "must be absent");
+  reject(scene_.central_field.has_value(), "/central_field", "must be absent");
+  reject(scene_.sleeping.has_value(), "/sleeping", "must be absent");
+}
+
+void Missing::check_liquid() {
+  const bool is_incompressible = scene_.pressure_solver == PressureSolver::incompressible;
+  reject(scene_.pressure_solver == PressureSolver::gas, "/pressure_solver",
+         "must be tait or incompressible");
+  reject(scene_.kernel != KernelId::wendland_c2, "/kernel", "must be wendland_c2");
+  reject(scene_.pair_precision != PairPrecision::single_precision, "/pair_precision",
+         "must be single");
+  // An incompressible liquid requires symplectic Euler.
+  reject(!is_incompressible && scene_.numerics.integrator != IntegratorId::velocity_verlet,
+         "/numerics/integrator", "must be velocity_verlet");
+  reject(is_incompressible && !scene_.forces.pressure, "/forces/pressure",
+         "must be true for an incompressible liquid");
+  const StepControl control = scene_.numerics.control;
+  reject(!is_incompressible && control != StepControl::fixed, "/numerics/control", "must be fixed");
+  reject(is_incompressible && control == StepControl::local, "/numerics/control",
+         "must be fixed or adaptive");
+  reject(may_solve_viscosity(model_), "/numerics/step", "must resolve the viscosity of the liquid");
+  reject(model_.has_surface_tension || model_.cohesion.has_value(), "/materials",
+         "must have no surface tension");
+  reject(model_.is_filled, "/vat/lid", "must be false for a vat full of liquid");
+}
+
+void Missing::check_laws() {
+  const std::string path = scene_.interfaces.empty() ? "/default_interface" : "/interfaces";
+  reject(model_.has_layers || model_.has_projection, path, "must have the law penalty");
+  reject(model_.has_restitution, path, "must have a damping in place of a restitution");
+}
+
+void Missing::check_solids() {
+  reject(scene_.numerics.integrator != IntegratorId::velocity_verlet, "/numerics/integrator",
+         "must be velocity_verlet");
+  reject(scene_.numerics.control != StepControl::fixed, "/numerics/control", "must be fixed");
+  for (std::size_t m = 0; m < scene_.materials.size(); ++m) {
+    const Material& material = scene_.materials[m];
+    const std::string path = "/materials/" + std::to_string(m);
+    reject(material.implicit_springs, path + "/implicit_springs", "must be false");
+    reject(material.plasticity.has_value(), path + "/plasticity", "must be absent");
+    reject(material.tearing_strain.has_value(), path + "/tearing_strain", "must be absent");
+    reject(material.elongation_limit.has_value(), path + "/elongation_limit", "must be absent");
+  }
+  check_laws();
+}
+
+}  // namespace
 
 Errors find_features_not_on_device(const Model& model) {
-  Errors errors;
-  const Scene& scene = model.scene;
-  const auto reject = [&](bool is_used, const std::string& path, const std::string& message) {
-    if (is_used) errors.push_back({"not_on_device", path, message});
-  };
-  const bool is_incompressible = scene.pressure_solver == PressureSolver::incompressible;
-  reject(scene.pressure_solver == PressureSolver::gas, "/pressure_solver",
-         "must be tait or incompressible on a device");
-  reject(model.liquid_count == 0, "/bodies", "must contain a liquid on a device");
-  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
-    const BodyDescription& body = scene.bodies[b];
-    const std::string path = "/bodies/" + std::to_string(b);
-    const bool is_supported =
-        body.kind == BodyKind::liquid || (body.kind == BodyKind::rigid && body.fixed);
-    reject(!is_supported, path + "/kind", "must be liquid, or rigid and fixed, on a device");
-    if (body.kind == BodyKind::liquid) {
-      reject(model.bodies[b].material != model.material.at(0), path + "/material",
-             "must be the material of the other liquids on a device");
-    }
-    if (body.kind != BodyKind::rigid) continue;
-    reject(body.motion.has_value(), path + "/motion", "must be absent on a device");
-    reject(!body.velocity.isZero(0), path + "/velocity", "must be 0 on a device");
-    reject(!body.angular_velocity.isZero(0), path + "/angular_velocity", "must be 0 on a device");
-  }
-  if (!errors.empty()) return errors;
-  reject(!scene.emitters.empty(), "/emitters", "must be empty on a device");
-  reject(!scene.drains.empty(), "/drains", "must be empty on a device");
-  reject(model.periodic.any(), "/periodic", "must be absent on a device");
-  reject(scene.central_field.has_value(), "/central_field", "must be absent on a device");
-  reject(scene.sleeping.has_value(), "/sleeping", "must be absent on a device");
-  reject(scene.kernel != KernelId::wendland_c2, "/kernel", "must be wendland_c2 on a device");
-  reject(scene.pair_precision != PairPrecision::single_precision, "/pair_precision",
-         "must be single on a device");
-  // An incompressible liquid requires symplectic Euler.
-  reject(!is_incompressible && scene.numerics.integrator != IntegratorId::velocity_verlet,
-         "/numerics/integrator", "must be velocity_verlet on a device");
-  reject(is_incompressible && !scene.forces.pressure, "/forces/pressure",
-         "must be true for an incompressible liquid on a device");
-  const StepControl control = scene.numerics.control;
-  reject(!is_incompressible && control != StepControl::fixed, "/numerics/control",
-         "must be fixed on a device");
-  reject(is_incompressible && control == StepControl::local, "/numerics/control",
-         "must be fixed or adaptive on a device");
-  const Real step = scene.numerics.step;
-  reject(
-      is_incompressible ? must_solve_own_damping(model, step) : must_solve_viscosity(model, step),
-      "/numerics/step", "must resolve the viscosity of the liquid on a device");
-  reject(model.has_surface_tension || model.cohesion.has_value(), "/materials",
-         "must have no surface tension on a device");
-  reject(model.is_filled, "/vat/lid", "must be false for a vat full of liquid on a device");
-  return errors;
+  Missing missing(model);
+  missing.check_bodies();
+  if (missing.any()) return std::move(missing).take();
+  missing.check_world();
+  model.liquid_count > 0 ? missing.check_liquid() : missing.check_solids();
+  return std::move(missing).take();
 }
 
 }  // namespace vat

@@ -223,10 +223,26 @@ TEST(BenchDocument, TablesOfReliabilityHaveTheFiguresOfTheirResults) {
               HasSubstr("| lost commands | 0 | 0 | C, 2 cores |"));
 }
 
+TEST(BenchDocument, TableOfDevicesComparesWithMostThreadsOfTheCpu) {
+  const Json speed = Json::parse(R"([
+    {"case": "a", "particles": 10, "threads": 1, "instruction set": "avx2", "ms per step": 9,
+     "wall s per simulated s": 9, "cpu": "C", "cores": 2},
+    {"case": "a", "particles": 10, "threads": 2, "instruction set": "avx2", "ms per step": 5,
+     "wall s per simulated s": 5, "cpu": "C", "cores": 2},
+    {"case": "a", "particles": 10, "threads": 0, "instruction set": "opencl:0", "ms per step": 8,
+     "wall s per simulated s": 15, "cpu": "C", "cores": 2},
+    {"case": "b", "particles": 10, "threads": 1, "instruction set": "avx2", "ms per step": 9,
+     "wall s per simulated s": 9, "cpu": "C", "cores": 2}])");
+  const std::string table = to_markdown(bench::devices_table(speed));
+  EXPECT_THAT(table, HasSubstr("| a | 10 | opencl:0 | 8 | 2 | 5 | 0.333 | C, 2 cores |"));
+  EXPECT_THAT(table, testing::Not(HasSubstr("| b |")));
+}
+
 // Each marker is on one page, which has no other markers.
 TEST(BenchDocument, PagesHaveEveryMarkerFigureAndCase) {
   std::set<std::string> found;
-  for (const char* name : {"core/ACCURACY.md", "README.md", "server/RELIABILITY.md"}) {
+  for (const char* name :
+       {"core/ACCURACY.md", "core/device/DEVICE.md", "README.md", "server/RELIABILITY.md"}) {
     const std::string page = read_file(fs::path(VAT_SOURCE_DIR) / name);
     std::map<std::string, std::string> contents;
     for (const std::string& marker : document_markers()) {

@@ -84,9 +84,9 @@ void DeviceSolve::iterate(const LiquidParameters& p, const SolveParameters& solv
                  direction_, charge_, partial);
     program_.run("find_slope", kOne, groups_, is_restart, partial, progress);
   }
-  program_.run("accelerate", slots_, p, solve, progress, s.cell_begins, s.sorted_place,
+  program_.run("accelerate", slots_, p, solve, progress, s.cells.begins, s.sorted_place,
                s.neighbour_counts, s.neighbours, charge_, solve_motion);
-  program_.run("compress", slots_, p, solve, progress, s.cell_begins, s.sorted_place,
+  program_.run("compress", slots_, p, solve, progress, s.cells.begins, s.sorted_place,
                s.neighbour_counts, s.neighbours, solve_motion, direction_, product_, partial);
   program_.run("find_length", kOne, solve, groups_, partial, progress);
   program_.run("take_step", slots_, solve, progress, s.sorted_place, squares, direction_, product_,

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "core/device/common/kernel_values.h"
 #include "core/device/liquid/device_particles.h"
 #include "core/device/liquid/liquid_geometry.h"
 #include "core/device/opencl/program.h"
@@ -54,12 +55,6 @@ struct SolveProgress {
   std::int32_t restarts;
   std::int32_t padding;
 };
-
-/// Returns the number of groups of work-items for `particles`, each of which has a partial sum.
-inline std::int32_t groups_of(std::size_t particles) {
-  constexpr std::size_t kGroup = opencl::Program::kGroup;
-  return static_cast<std::int32_t>((particles + kGroup - 1) / kGroup);
-}
 
 /// Returns the parameters that do not depend on the step, for a model with one liquid.
 SolveParameters solve_parameters(const Model& model);

@@ -5,6 +5,7 @@
 
 #include "core/device/incompressible/device_solve.h"
 #include "core/evaluation/motion_probe.h"
+#include "core/limits.h"
 #include "core/stepping/control/step_control.h"
 #include "core/stepping/control/step_control_liquid.h"
 
@@ -26,12 +27,25 @@ std::int32_t count_of(const ModelBody& body) {
   return static_cast<std::int32_t>(body.particles.size());
 }
 
+/// The least step of StepBounds [s].
+Real find_own_step(const Model& model) {
+  const StepBounds bounds = find_step_bounds(model);
+  return std::min(bounds.scene_step, std::ranges::min(bounds.own_step));
+}
+
 }  // namespace
+
+Real longest_adaptive_step(const Model& model) {
+  const Numerics& numerics = model.scene.numerics;
+  const Real step = without_viscosity_solve(model, std::min(find_own_step(model), numerics.step));
+  return std::max(step, std::ldexp(numerics.step, -kMaxStepLevel));
+}
 
 DeviceStepControl::DeviceStepControl(Program& program, const Model& model, const Buffer& partial)
     : program_(program),
       partial_(partial),
       travel_(guard_bounds(model).travel[model.body[0]]),
+      own_step_(find_own_step(model)),
       motion_(program, kMotionBytes),
       results_(program, (model.bodies.size() + 1) * sizeof(Double2)),
       histogram_(program, kDigits * sizeof(std::int32_t)) {
@@ -39,8 +53,6 @@ DeviceStepControl::DeviceStepControl(Program& program, const Model& model, const
     const ModelBody& body = model.bodies[b];
     if (body.kind == BodyKind::liquid && body.particles.size() > 0) bodies_.push_back(b);
   }
-  const StepBounds bounds = find_step_bounds(model);
-  own_step_ = std::min(bounds.scene_step, std::ranges::min(bounds.own_step));
 }
 
 std::size_t DeviceStepControl::bytes_for(const Model& model) {

@@ -23,6 +23,10 @@ struct ProbedMotion {
   const opencl::Buffer& weight;
 };
 
+/// Returns the longest adaptive step [s] of an incompressible liquid in any state. It is at most
+/// the nominal step.
+Real longest_adaptive_step(const Model& model);
+
 /// Reductions for adaptive steps of incompressible liquids on a device. The functions throw
 /// opencl::DeviceFailure.
 class DeviceStepControl {
@@ -44,7 +48,7 @@ class DeviceStepControl {
   opencl::Program& program_;
   const opencl::Buffer& partial_;
   const Real travel_;                ///< see GuardBounds [m]
-  Real own_step_ = 0;                ///< least of StepBounds [s]
+  const Real own_step_;              ///< least of StepBounds [s]
   std::vector<std::size_t> bodies_;  ///< indices of the liquid bodies
   opencl::Buffer motion_, results_, histogram_;
 };

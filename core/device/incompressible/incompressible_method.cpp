@@ -6,9 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/device/common/device_motion.h"
 #include "core/device/incompressible/device_solve.h"
 #include "core/device/incompressible/device_step_control.h"
-#include "core/device/liquid/device_motion.h"
 #include "core/device/liquid/device_particles.h"
 #include "core/liquid/incompressible/solve_limits.h"
 #include "core/stepping/control/step_control.h"
@@ -128,7 +128,7 @@ void IncompressibleMethod::find_density_after(const char* name, const LiquidPara
                                               const Arguments&... own) {
   DeviceParticles& s = particles_;
   s.sort_after(name, p, own...);
-  program_.run("find_density", s.count(), p, s.cell_begins, s.order, now_.pressure, s.sorted_place,
+  program_.run("find_density", s.count(), p, s.cells.begins, s.order, now_.pressure, s.sorted_place,
                s.sorted_motion, s.neighbour_counts, s.neighbours, particles_.density,
                solve_.squares, solve_.partial);
 }
@@ -142,7 +142,7 @@ void IncompressibleMethod::find_acceleration(const LiquidParameters& p,
                                              const Buffer& acceleration) {
   DeviceParticles& s = particles_;
   s.find_solid_pressure(p);
-  program_.run("find_acceleration", s.count(), p, s.cell_begins, s.order, s.sorted_place,
+  program_.run("find_acceleration", s.count(), p, s.cells.begins, s.order, s.sorted_place,
                s.sorted_motion, s.neighbour_counts, s.neighbours, acceleration);
 }
 
@@ -160,9 +160,9 @@ void IncompressibleMethod::project_velocities(const Step& step) {
     p.gravity[k] = 0;
   }
   set_limits(velocity_limits(model_->scene.incompressible), solve);
-  program_.run("kick", n, p, solve, s.cell_begins, s.order, s.sorted_place, s.sorted_motion,
+  program_.run("kick", n, p, solve, s.cells.begins, s.order, s.sorted_place, s.sorted_motion,
                s.neighbour_counts, s.neighbours, now_.motion.velocity, solve_.solve_motion);
-  program_.run("begin_projection", n, p, solve, s.cell_begins, s.order, s.sorted_place,
+  program_.run("begin_projection", n, p, solve, s.cells.begins, s.order, s.sorted_place,
                s.neighbour_counts, s.neighbours, solve_.solve_motion, particles_.density,
                solve_.squares, now_.pressure, solve_.x, solve_.excess, solve_.gradient,
                solve_.whole, solve_.partial);
@@ -200,10 +200,10 @@ bool IncompressibleMethod::take_step(const Step& step, AdvanceReport& report) {
   p.greatest_speed2 = geometry_.greatest_speed2(step.length);
   correct_density(p);
   program_.run("check", model_->liquid_count, p, now_.motion.position, now_.motion.velocity,
-               particles_.counters);
+               particles_.counters.buffer);
   report.count_evaluation(model_->particle_count);
   report.count_steps(1, step.length, step.length);
-  return particles_.read_counters().faults == 0;
+  return particles_.counters.read().faults == 0;
 }
 
 Real IncompressibleMethod::probe_start(Real start, Real dt) {
@@ -221,7 +221,7 @@ Real IncompressibleMethod::probe_start(Real start, Real dt) {
   const Real rate = control_->observed_rate(
       *model_, {start_.motion.position, now_.motion.position, before, after, particles_.weight()});
   copy(start_, now_);
-  particles_.clear_counters();
+  particles_.counters.clear();
   find_density_at(start);
   return rate;
 }
@@ -256,7 +256,7 @@ bool IncompressibleMethod::take_steps(const EngineInput& input, std::uint32_t st
   const State& state = input.state;
   const Real dt = model_->scene.numerics.step;
   const auto time = [&](std::uint32_t s) { return static_cast<Real>(state.step_count + s) * dt; };
-  particles_.clear_counters();
+  particles_.counters.clear();
   if (!input.continues) {
     upload(state);
     find_density_at(time(0));
@@ -276,21 +276,22 @@ bool IncompressibleMethod::take_steps(const EngineInput& input, std::uint32_t st
     history_ = history_before;
     return false;
   }
-  report.wall_stops += static_cast<std::uint64_t>(particles_.read_counters().stops);
+  report.wall_stops += static_cast<std::uint64_t>(particles_.counters.read().stops);
   input.report = std::move(report);
   return true;
 }
 
 }  // namespace
 
-std::size_t bytes_for_incompressible(const Model& model, const LiquidGeometry& geometry) {
+std::size_t bytes_for_incompressible(const Model& model) {
+  const LiquidGeometry geometry(model, guard_bounds(model));
   return DeviceParticles::bytes_for(model, geometry) + DeviceSolve::bytes_for(model) +
          DeviceStepControl::bytes_for(model) + 2 * model.liquid_count * IncompressibleState::kBytes;
 }
 
 std::unique_ptr<DeviceMethod> make_incompressible_method(Program& program,
-                                                         std::shared_ptr<const Model> model,
-                                                         const LiquidGeometry& geometry) {
+                                                         std::shared_ptr<const Model> model) {
+  const LiquidGeometry geometry(*model, guard_bounds(*model));
   return std::make_unique<IncompressibleMethod>(program, std::move(model), geometry);
 }
 

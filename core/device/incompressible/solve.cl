@@ -1,12 +1,9 @@
 // Solves over the particles of an incompressible liquid, for pressures times dt^2. The names are
 // those of core/liquid/incompressible/complementarity.h and pressure_response.h. All vectors are by
-// slot, with zeros for solids. Each sum is a fixed tree: first over a group, then over the partial
-// sums of the groups.
+// slot, with zeros for solids.
 //
 // For a liquid particle, a solid particle counts as a mirror image of it with twice the weight, see
 // pressure_response.h.
-
-#define GROUP 256
 
 typedef struct {
   double wall_velocity[3];
@@ -49,39 +46,6 @@ typedef struct {
   int restarts;
   int padding;
 } Progress;
-
-// The maximum, and `a` if the comparison fails because of a NaN.
-double greater(double a, double b) {
-  return a < b ? b : a;
-}
-
-double4 combined(double4 a, double4 b) {
-  return (double4)(a.x + b.x, a.y + b.y, a.z + b.z, greater(a.w, b.w));
-}
-
-// The sums of the first three components over the group, and the maximum of the fourth one.
-double4 sum_group(local double4* sums, double4 own) {
-  const int t = get_local_id(0);
-  sums[t] = own;
-  barrier(CLK_LOCAL_MEM_FENCE);
-  for (int width = GROUP / 2; width > 0; width /= 2) {
-    if (t < width) sums[t] = combined(sums[t], sums[t + width]);
-    barrier(CLK_LOCAL_MEM_FENCE);
-  }
-  return sums[0];
-}
-
-void write_partial(local double4* sums, double4 own, global double4* partial) {
-  const double4 total = sum_group(sums, own);
-  if (get_local_id(0) == 0) partial[get_group_id(0)] = total;
-}
-
-// The total of the partial sums, for one group.
-double4 sum_partial(local double4* sums, int count, global const double4* partial) {
-  double4 own = 0;
-  for (int n = get_local_id(0); n < count; n += GROUP) own = combined(own, partial[n]);
-  return sum_group(sums, own);
-}
 
 // D of the motions, divided by rate_factor.
 float rate_of(const Parameters* p, int slot, global const int* begins,

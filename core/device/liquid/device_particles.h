@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "core/device/common/device_cells.h"
+#include "core/device/common/device_counters.h"
 #include "core/device/liquid/liquid_geometry.h"
 #include "core/device/opencl/program.h"
 #include "core/model/model.h"
@@ -14,12 +16,6 @@ namespace vat {
 /// A vector of four numbers of a kernel.
 struct Float4 {
   float x, y, z, w;
-};
-
-/// Counters of the kernels, in the order of particles.cl.
-struct Counters {
-  std::int32_t faults = 0;
-  std::int32_t stops = 0;
 };
 
 /// The particles of a liquid and of the solids at rest in it, on a device. They are in the order of
@@ -40,12 +36,12 @@ class DeviceParticles {
   /// enter_cell().
   template <class... Arguments>
   void sort_after(const char* name, const LiquidParameters& p, const Arguments&... own) {
-    program_.fill_with_zeros(cell_counts_, cells_ * sizeof(std::int32_t));
-    program_.run(name, liquid_count_, p, own..., weight_, place_, motion_, cell_of_, rank_,
-                 cell_counts_, counters);
+    cells.clear();
+    program_.run(name, liquid_count_, p, own..., weight_, place_, motion_, cells.cell_of,
+                 cells.rank, cells.counts, counters.buffer);
     if (count_ > liquid_count_) {
       program_.run("enter_solids", count_ - liquid_count_, p, solid_position_, weight_, place_,
-                   motion_, cell_of_, rank_, cell_counts_, counters);
+                   motion_, cells.cell_of, cells.rank, cells.counts, counters.buffer);
     }
     sort();
   }
@@ -54,11 +50,6 @@ class DeviceParticles {
 
   /// Returns the number of liquid and solid particles.
   std::size_t count() const { return count_; }
-
-  /// Resets the counters.
-  void clear_counters();
-  /// Waits for all commands, and returns the counters.
-  Counters read_counters();
 
   const opencl::Buffer& weight() const { return weight_; }
 
@@ -69,8 +60,8 @@ class DeviceParticles {
   opencl::Buffer density;  ///< relative to the density at rest
   opencl::Buffer neighbour_counts;
   opencl::Buffer neighbours;
-  opencl::Buffer cell_begins;
-  opencl::Buffer counters;
+  DeviceCells cells;
+  DeviceCounters counters;
 
  private:
   void sort();
@@ -78,10 +69,8 @@ class DeviceParticles {
   opencl::Program& program_;
   const std::size_t liquid_count_;
   const std::size_t count_;
-  const std::size_t cells_;
-  opencl::Buffer weight_, place_, motion_, cell_of_, rank_;  // in the order of particles
-  opencl::Buffer unsorted_, cell_counts_, block_sums_;
-  opencl::Buffer solid_position_;  ///< only with solids
+  opencl::Buffer weight_, place_, motion_;  // in the order of particles
+  opencl::Buffer solid_position_;           ///< only with solids
 };
 
 }  // namespace vat

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/device/common/kernel_values.h"
+#include "core/device/common/vat_box.h"
 #include "core/laws/vat_motion.h"
 #include "core/limits.h"
 #include "core/liquid/pairs/coupled_pairs.h"
@@ -19,44 +21,10 @@ constexpr int kMinBits = 19;
 constexpr Real kMostCells = 4096;
 constexpr Real kPlaces = 1 << 29;  ///< limit of integer positions in particles.cl
 
-void store(const Vec3& from, double (&to)[3]) {
-  for (int k = 0; k < 3; ++k) to[k] = from[k];
-}
-void store(const Vec3& from, float (&to)[3]) {
-  for (int k = 0; k < 3; ++k) to[k] = static_cast<float>(from[k]);
-}
-
-/// The box of the cells: the vat, or the liquid at time 0 with half its size around it. Particles
-/// outside are in the outermost cells, which is slower, but not less accurate.
-std::array<Vec3, 2> box_of(const Model& model) {
-  if (model.scene.vat) return {model.scene.vat->min, model.scene.vat->max};
-  Vec3 low = Vec3::Constant(std::numeric_limits<Real>::infinity());
-  Vec3 high = -low;
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    const std::shared_ptr<const SampledBody> sample = sample_of(model, b);
-    for (const Vec3& position : sample->positions) {
-      low = low.cwiseMin(position);
-      high = high.cwiseMax(position);
-    }
-  }
-  const Vec3 margin = (high - low) / 2;
-  return {low - margin, high + margin};
-}
-
-/// The first coordinate inside a wall that counts as inside; see wall_distance().
-Real plane_of(const Vat& vat, const VatMotion& motion, int wall) {
-  const int axis = wall / 2;
-  Vec3 p = Vec3::Zero();
-  p[axis] = (wall % 2 == 0 ? vat.min : vat.max)[axis] + motion.offset[axis];
-  const Real inwards = wall % 2 == 0 ? kMaxLength : -kMaxLength;
-  while (wall_distance(vat, motion, wall, p) < 0) p[axis] = std::nextafter(p[axis], inwards);
-  return p[axis];
-}
-
 }  // namespace
 
 void LiquidGeometry::set_grid(const Model& model) {
-  const auto [low, high] = box_of(model);
+  const auto [low, high] = box_of_cells(model);
   const Real support = model.liquids[model.material[0]]->support_radius;
   const Real extent = (high - low).maxCoeff() / support;
   // Twice the box fits into the integers if possible, with the finest unit.
@@ -131,7 +99,7 @@ LiquidParameters LiquidGeometry::at(const Model& model, const StepMoment& moment
   }
   for (const int wall : model.walls) {
     const int axis = wall / 2;
-    const Real plane = plane_of(*scene.vat, motion, wall);
+    const Real plane = plane_of_wall(*scene.vat, motion, wall);
     const auto twice =
         static_cast<std::int32_t>(std::llround(2 * (plane - origin[axis]) * p.inverse_unit));
     (wall % 2 == 0 ? p.wall_low : p.wall_high)[axis] = plane;

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "core/device/common/step_moment.h"
 #include "core/guard/guard.h"
 #include "core/model/model.h"
 
@@ -46,15 +47,6 @@ struct LiquidParameters {
   std::int32_t bounces;    ///< 1: walls reverse velocities; 0: walls remove them
   std::int32_t count;      ///< liquid particles
   std::int32_t solids;     ///< solid particles
-};
-
-/// A moment of a step: the durations of its kicks and of its drift, and the time after the drift.
-struct StepMoment {
-  Real time = 0;  ///< [s]
-  Real closing = 0;
-  Real opening = 0;
-  Real drift = 0;
-  Real prediction = 0;
 };
 
 /// Computes the parameters of kernels for a model with one liquid.

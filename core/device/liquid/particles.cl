@@ -6,11 +6,6 @@
 // p.support units are one support radius, and 2^p.cell_bits units are one cell. Differences of such
 // positions are exact.
 
-#pragma OPENCL EXTENSION cl_khr_fp64 : enable
-#ifdef VAT_EXACT
-#pragma OPENCL FP_CONTRACT OFF
-#endif
-
 typedef struct {
   double origin[3];
   double inverse_unit;
@@ -50,8 +45,6 @@ typedef struct {
   int solids;
 } Parameters;
 
-enum { kFault = 0, kStops = 1 };
-
 // Limit of positions, so that differences of positions and images fit into 32 bits.
 #define PLACE_LIMIT (1 << 29)
 
@@ -60,11 +53,7 @@ int cell_along(int place, int count, int bits) {
 }
 
 bool is_sound(const Parameters* p, const double* x, const double* v) {
-  bool sound = v[0] * v[0] + v[1] * v[1] + v[2] * v[2] <= p->greatest_speed2;
-  for (int k = 0; k < 3; ++k) {
-    sound = sound && x[k] >= p->domain_low[k] && x[k] <= p->domain_high[k];
-  }
-  return sound;
+  return is_within(p->domain_low, p->domain_high, p->greatest_speed2, x, v);
 }
 
 bool is_between_walls(const Parameters* p, const double* x) {
@@ -135,4 +124,18 @@ kernel void enter_solids(const Parameters p, global const double* solid_position
   for (int k = 0; k < 3; ++k) x[k] = solid_position[3 * b + k];
   const float w[3] = {0, 0, 0};
   enter_cell(&p, p.count + b, x, w, weight, place, motion, cell_of, rank, cell_counts, status);
+}
+
+// Copies the particles in the order of cells.
+kernel void collect(const int count, global const int* cell_of, global const int* begins,
+                    global const int* unsorted, global const int4* place,
+                    global const float4* motion, global int* order, global int4* sorted_place,
+                    global float4* sorted_motion) {
+  const int t = get_global_id(0);
+  if (t >= count) return;
+  const int i = unsorted[t];
+  const int slot = slot_in_cell(i, cell_of, begins, unsorted);
+  order[slot] = i;
+  sorted_place[slot] = place[i];
+  sorted_motion[slot] = motion[i];
 }

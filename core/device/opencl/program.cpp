@@ -8,12 +8,13 @@ namespace vat::opencl {
 
 Buffer::Buffer(const Program& program, std::size_t bytes) : program_(&program) {
   VAT_CHECK(bytes > 0);
-  if (bytes > program.device_.greatest_buffer) {
-    throw DeviceFailure(program.device_.name + " has no buffers of " + std::to_string(bytes) +
+  if (bytes > program.device().greatest_buffer) {
+    throw DeviceFailure(program.device().name + " has no buffers of " + std::to_string(bytes) +
                         " bytes");
   }
   cl_int code = CL_SUCCESS;
-  memory_ = program.api_.create_buffer(program.context_, CL_MEM_READ_WRITE, bytes, nullptr, &code);
+  memory_ = program.api_.create_buffer(program.compiled_->context(), CL_MEM_READ_WRITE, bytes,
+                                       nullptr, &code);
   program.check(code, "the allocation of a buffer");
 }
 
@@ -21,45 +22,28 @@ Buffer::~Buffer() {
   if (memory_ != nullptr) program_->api_.release_buffer(memory_);
 }
 
-Result<std::unique_ptr<Program>> Program::create(const Device& device, const char* source,
+Result<std::unique_ptr<Program>> Program::create(const Device& device, const std::string& source,
                                                  const std::string& options) {
   const Result<const Api*> api = load_api();
   if (!api) return api.errors();
-  std::unique_ptr<Program> program(new Program(*api.value(), device));
-  if (Status built = program->build(source, options); !built) return built.errors();
-  return program;
-}
-
-Status Program::build(const char* source, const std::string& options) {
-  const auto failed = [&](const std::string& what) {
-    return Error{"device_failed", "/device", device_.name + " (" + device_.driver + "): " + what};
-  };
+  auto compiled = compile_once(device, source, options);
+  if (!compiled) return compiled.errors();
+  std::unique_ptr<Program> program(new Program(*api.value(), std::move(compiled).value()));
   cl_int code = CL_SUCCESS;
-  context_ = api_.create_context(nullptr, 1, &device_.id, nullptr, nullptr, &code);
-  if (code != CL_SUCCESS) return failed("no context, OpenCL error " + std::to_string(code));
-  queue_ = api_.create_queue(context_, device_.id, 0, &code);
-  if (code != CL_SUCCESS) return failed("no queue, OpenCL error " + std::to_string(code));
-  program_ = api_.create_program(context_, 1, &source, nullptr, &code);
-  if (code != CL_SUCCESS) return failed("no program, OpenCL error " + std::to_string(code));
-  code = api_.build_program(program_, 1, &device_.id, options.c_str(), nullptr, nullptr);
-  if (code == CL_SUCCESS) return {};
-  std::size_t size = 0;
-  api_.get_build_info(program_, device_.id, CL_PROGRAM_BUILD_LOG, 0, nullptr, &size);
-  std::string log(size, '\0');
-  api_.get_build_info(program_, device_.id, CL_PROGRAM_BUILD_LOG, size, log.data(), nullptr);
-  return failed("the kernels do not compile, OpenCL error " + std::to_string(code) + "\n" + log);
+  program->queue_ = api.value()->create_queue(program->compiled_->context(), device.id, 0, &code);
+  if (code == CL_SUCCESS) return program;
+  return Error{"device_failed", "/device",
+               device.name + ": no queue, OpenCL error " + std::to_string(code)};
 }
 
 Program::~Program() {
   for (const auto& [name, kernel] : kernels_) api_.release_kernel(kernel);
-  if (program_ != nullptr) api_.release_program(program_);
   if (queue_ != nullptr) api_.release_queue(queue_);
-  if (context_ != nullptr) api_.release_context(context_);
 }
 
 void Program::check(cl_int code, const char* action) const {
   if (code == CL_SUCCESS) return;
-  throw DeviceFailure(device_.name + " (" + device_.driver + "): " + action +
+  throw DeviceFailure(device().name + " (" + device().driver + "): " + action +
                       " failed with OpenCL error " + std::to_string(code));
 }
 
@@ -67,7 +51,7 @@ cl_kernel Program::find_kernel(const char* name) {
   const auto found = std::ranges::find(kernels_, name, &std::pair<std::string, cl_kernel>::first);
   if (found != kernels_.end()) return found->second;
   cl_int code = CL_SUCCESS;
-  cl_kernel kernel = api_.create_kernel(program_, name, &code);
+  cl_kernel kernel = api_.create_kernel(compiled_->program(), name, &code);
   check(code, name);
   kernels_.emplace_back(name, kernel);
   return kernel;

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/device/opencl/devices.h"
+#include "core/device/opencl/compiled_program.h"
 
 /// Kernels of one device, their buffers, and the queue that runs them in order.
 namespace vat::opencl {
@@ -45,15 +45,14 @@ class Buffer {
 
 class Program {
  public:
-  /// Compiles `source` for `device`. Fails with the code "device_failed", the name of the driver
-  /// and the log of its compiler.
-  static Result<std::unique_ptr<Program>> create(const Device& device, const char* source,
+  /// Creates a queue and kernels of the program of compile_once(). Fails like compile_once().
+  static Result<std::unique_ptr<Program>> create(const Device& device, const std::string& source,
                                                  const std::string& options);
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
   ~Program();
 
-  const Device& device() const { return device_; }
+  const Device& device() const { return compiled_->device(); }
 
   // The functions below throw DeviceFailure. Commands run in the order of their calls.
 
@@ -84,8 +83,8 @@ class Program {
  private:
   friend class Buffer;
 
-  Program(const Api& api, Device device) : api_(api), device_(std::move(device)) {}
-  Status build(const char* source, const std::string& options);
+  Program(const Api& api, std::shared_ptr<const CompiledProgram> compiled)
+      : api_(api), compiled_(std::move(compiled)) {}
   cl_kernel find_kernel(const char* name);
   void set_argument(const char* name, cl_kernel kernel, cl_uint index, const Buffer& buffer) {
     cl_mem memory = buffer.memory();
@@ -104,10 +103,8 @@ class Program {
   void check(cl_int code, const char* action) const;
 
   const Api& api_;
-  Device device_;
-  cl_context context_ = nullptr;
+  const std::shared_ptr<const CompiledProgram> compiled_;
   cl_command_queue queue_ = nullptr;
-  cl_program program_ = nullptr;
   std::vector<std::pair<std::string, cl_kernel>> kernels_;
 };
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/damping/damping_solve.h"
-#include "core/device/liquid/device_motion.h"
+#include "core/device/common/device_motion.h"
 #include "core/device/liquid/device_particles.h"
 
 namespace vat {
@@ -95,10 +95,10 @@ void TaitMethod::copy(const TaitState& from, TaitState& to) {
 void TaitMethod::evaluate(const LiquidParameters& p) {
   DeviceParticles& s = particles_;
   s.sort_after("move", p, now_.motion.position, now_.motion.velocity, now_.acceleration);
-  program_.run("find_pressure", s.count(), p, s.cell_begins, s.sorted_place, s.sorted_motion,
+  program_.run("find_pressure", s.count(), p, s.cells.begins, s.sorted_place, s.sorted_motion,
                s.density, s.neighbour_counts, s.neighbours);
   s.find_solid_pressure(p);
-  program_.run("find_acceleration", s.count(), p, s.cell_begins, s.order, s.sorted_place,
+  program_.run("find_acceleration", s.count(), p, s.cells.begins, s.order, s.sorted_place,
                s.sorted_motion, s.neighbour_counts, s.neighbours, now_.acceleration);
 }
 
@@ -107,7 +107,7 @@ bool TaitMethod::take_steps(const EngineInput& input, std::uint32_t steps) {
   const Real dt = model_->scene.numerics.step;
   if (!input.continues) upload(state);
   copy(now_, start_);
-  particles_.clear_counters();
+  particles_.counters.clear();
   std::uint32_t evaluations = steps;
   if (!input.continues && !state.forces_current) {
     const Real start = static_cast<Real>(state.step_count) * dt;
@@ -121,8 +121,8 @@ bool TaitMethod::take_steps(const EngineInput& input, std::uint32_t steps) {
     moment.closing = dt / 2;
   }
   program_.run("finish", model_->liquid_count, geometry_.at(*model_, moment), now_.motion.position,
-               now_.motion.velocity, now_.acceleration, particles_.counters);
-  const Counters counters = particles_.read_counters();
+               now_.motion.velocity, now_.acceleration, particles_.counters.buffer);
+  const Counters counters = particles_.counters.read();
   if (counters.faults != 0) {
     copy(start_, now_);
     return false;
@@ -136,12 +136,14 @@ bool TaitMethod::take_steps(const EngineInput& input, std::uint32_t steps) {
 
 }  // namespace
 
-std::size_t bytes_for_tait(const Model& model, const LiquidGeometry& geometry) {
+std::size_t bytes_for_tait(const Model& model) {
+  const LiquidGeometry geometry(model, guard_bounds(model));
   return DeviceParticles::bytes_for(model, geometry) + 2 * model.liquid_count * TaitState::kBytes;
 }
 
-std::unique_ptr<DeviceMethod> make_tait_method(Program& program, std::shared_ptr<const Model> model,
-                                               const LiquidGeometry& geometry) {
+std::unique_ptr<DeviceMethod> make_tait_method(Program& program,
+                                               std::shared_ptr<const Model> model) {
+  const LiquidGeometry geometry(*model, guard_bounds(*model));
   return std::make_unique<TaitMethod>(program, std::move(model), geometry);
 }
 

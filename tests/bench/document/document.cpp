@@ -69,6 +69,7 @@ constexpr Content kContents[] = {
     {"laws", "accuracy", "laws", laws_table},
     {"steps", "accuracy", "control", steps_table},
     {"counts", "stability", "stability", counts_table},
+    {"devices", "speed", "speed", devices_table},
     {"race", "race", "race", race_table},
     {"durability", "durability", "durability", durability_table},
     {"recovery", "recovery", "recovery", recovery_table},

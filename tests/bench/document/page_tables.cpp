@@ -13,13 +13,16 @@ std::string cell_text(const Json& row, const char* column) {
   return row.at(column).get<std::string>();
 }
 
+std::string three_digits(Real value) {
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%.3g", value);
+  return buffer;
+}
+
 /// Formats a value with three digits, or as a dash if it is absent.
 std::string cell_number(const Json& row, const char* column) {
   const Json& value = row.at(column);
-  if (value.is_null()) return "–";
-  char buffer[32];
-  std::snprintf(buffer, sizeof buffer, "%.3g", value.get<Real>());
-  return buffer;
+  return value.is_null() ? "–" : three_digits(value.get<Real>());
 }
 
 bool is_judged(const Json& row) {
@@ -230,6 +233,25 @@ Table race_table(const Json& race) {
                           cell_number(row, "SPlisHSPlasH [s/s]"),
                           cell_number(row, "SPlisHSPlasH / vat"),
                           cell_number(row, "density error of vat [%]") + " %", machine_cell(row)});
+  }
+  return table;
+}
+
+Table devices_table(const Json& speed) {
+  Table table{{"case", "particles", "device", "ms per step", "threads of the CPU",
+               "ms per step of the CPU", "speed / that of the CPU", "machine"},
+              {}};
+  for (const std::vector<Json>& group : by_case(speed)) {
+    const auto threads = [](const Json& row) { return row.at("threads").get<std::uint64_t>(); };
+    const auto time = [](const Json& row) { return row.at("wall s per simulated s").get<Real>(); };
+    const Json& cpu = *std::ranges::max_element(group, {}, threads);
+    for (const Json& row : group) {
+      if (threads(row) > 0) continue;
+      table.rows.push_back({cell_text(row, "case"), row.at("particles").get<std::uint64_t>(),
+                            cell_text(row, "instruction set"), cell_number(row, "ms per step"),
+                            threads(cpu), cell_number(cpu, "ms per step"),
+                            three_digits(time(cpu) / time(row)), machine_cell(row)});
+    }
   }
   return table;
 }

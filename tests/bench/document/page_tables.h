@@ -6,8 +6,9 @@
 #include "protocol/json/json_reader.h"
 #include "tests/bench/report/table.h"
 
-/// The tables of core/ACCURACY.md and server/RELIABILITY.md, from the JSON results of the other
-/// commands. The functions throw nlohmann::json::exception if a row lacks a column.
+/// The tables of core/ACCURACY.md, core/device/DEVICE.md and server/RELIABILITY.md, from the JSON
+/// results of the other commands. The functions throw nlohmann::json::exception if a row lacks a
+/// column.
 namespace vat::bench {
 
 /// Returns one row per case: the metric that uses most of its tolerance, and the number of all
@@ -43,6 +44,9 @@ Table counts_table(const Json& stability);
 
 /// Returns one row per race: times of both programs, their ratio, and the machine.
 Table race_table(const Json& race);
+
+/// Returns one row for each case on a device, with the times on most threads of the CPU.
+Table devices_table(const Json& speed);
 
 /// Returns all columns except the commit, with the machine in one column.
 Table durability_table(const Json& durability);

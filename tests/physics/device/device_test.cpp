@@ -85,33 +85,11 @@ TEST(Device, ReflectsParticlesAtWalls) {
 }
 
 TEST(Device, HasTheSameBitsInAnyPortionsOfSteps) {
-  const Scene scene = make_column();
-  Simulation one = make_on_device(scene);
-  Simulation other = make_on_device(scene);
-  one.advance(40);
-  for (int n = 0; n < 8; ++n) other.advance(n % 2 == 0 ? 3 : 7);
-  EXPECT_EQ(one.state_hash(), other.state_hash());
-  const Snapshot middle = one.snapshot();
-  one.advance(20);
-  const std::uint64_t end = one.state_hash();
-  one.restore(middle);
-  EXPECT_EQ(one.advance(20).device_steps, 20U);
-  EXPECT_EQ(one.state_hash(), end);
+  expect_same_bits_in_any_portions(make_column(), 4);
 }
 
 TEST(Device, ContinuesAStateOfTheCpuAndTheReverse) {
-  const Scene scene = make_column();
-  Simulation cpu = make_simulation(scene);
-  cpu.advance(20);
-  Simulation device = Simulation::from(cpu.snapshot());
-  EXPECT_EQ(device.state_hash(), cpu.state_hash());
-  ASSERT_TRUE(device.set_engine(make_device()).ok());
-  EXPECT_EQ(device.advance(20).device_steps, 20U);
-  cpu.advance(20);
-  EXPECT_LT(difference(device, cpu), 1e-4 * kSpacing);
-  Simulation back = Simulation::from(device.snapshot());
-  EXPECT_EQ(back.state_hash(), device.state_hash());
-  EXPECT_EQ(back.advance(20).device_steps, 0U);
+  expect_continuation(make_column(), 20, 1e-4 * kSpacing);
 }
 
 // Each operation is rounded as IEEE 754 defines it, so that the hash is a constant. An NVIDIA H200
@@ -172,6 +150,14 @@ TEST(Device, LeavesAFailedStepToTheCpu) {
     one.edit(scene);
     expect_steps_of_cpu(scene, one.steps);
   }
+}
+
+TEST(Device, RestoresTheStateBeforeAFailedStep) {
+  Scene scene = make_column();
+  scene.bodies[0].position.z() = 3;
+  scene.vat->max.z() = 8;
+  scene.bodies[0].velocity = {0, 0, -19.985};
+  expect_restored_state(scene, 1, 2);
 }
 
 TEST(Device, RefusesFeaturesThatItLacks) {

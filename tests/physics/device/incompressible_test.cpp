@@ -95,6 +95,18 @@ TEST(IncompressibleDevice, ChoosesTheStepsOfTheCpu) {
   EXPECT_LT(least, scene.numerics.step / 4) << "the motion limits steps";
 }
 
+// The nominal step does not resolve the viscosity, but the weight of the liquid shortens all steps.
+TEST(IncompressibleDevice, TakesAdaptiveStepsThatResolveTheViscosity) {
+  Scene scene = make_adaptive();
+  scene.materials[0].liquid->viscosity = 0.1;
+  Simulation device = make_on_device(scene);
+  Simulation cpu = make_simulation(scene);
+  const AdvanceReport report = device.advance(4);
+  EXPECT_EQ(report.device_steps, 4U);
+  EXPECT_EQ(report.steps, cpu.advance(4).steps);
+  EXPECT_LT(difference(device, cpu), 1e-3 * kSpacing);
+}
+
 // The probe of the first step finds a motion that the other limits do not see.
 TEST(IncompressibleDevice, ProbesTheFirstStep) {
   Scene scene = make_adaptive();
@@ -293,6 +305,19 @@ TEST(IncompressibleDevice, LeavesAFailedStepToTheCpu) {
   }
 }
 
+TEST(IncompressibleDevice, RestoresTheStateBeforeAFailedStep) {
+  Scene fixed = make_column();
+  fixed.vat->max.z() = 4;
+  fixed.bodies[0].position = {0, 0, 2};
+  fixed.bodies[0].velocity = {0, 0, -9.97};  // the greatest speed is 10 m/s
+  expect_restored_state(fixed, 1, 2);
+  Scene adaptive = make_adaptive();
+  // The integer positions of the device end at 64 support radii, 0.57 m above the column.
+  adaptive.bodies[0].position.z() = 64 * 2 * kSpacing - 0.57 - 0.23;
+  adaptive.bodies[0].velocity = {0, 0, 19};
+  expect_restored_state(adaptive, 1, 2);
+}
+
 TEST(IncompressibleDevice, RefusesFeaturesThatItLacks) {
   const SceneCase cases[] = {
       {"/forces/pressure", [](Scene& s) { s.forces.pressure = false; }},
@@ -301,6 +326,10 @@ TEST(IncompressibleDevice, RefusesFeaturesThatItLacks) {
       {"/kernel", [](Scene& s) { s.kernel = KernelId::cubic_spline; }},
   };
   expect_refusals(make_column(), cases);
+  const SceneCase adaptive[] = {
+      {"/numerics/step", [](Scene& s) { s.materials[0].liquid->viscosity = 200; }},
+  };
+  expect_refusals(make_adaptive(), adaptive);
 }
 
 }  // namespace

@@ -49,6 +49,28 @@ inline Real difference(const Simulation& a, const Simulation& b) {
   return greatest;
 }
 
+/// Returns the relative rounding error of a state after `steps` steps. The order of sums differs,
+/// so that each step adds about ten units in the last place. Contacts double the error a few times.
+inline Real rounding_after(std::uint32_t steps) {
+  constexpr Real kGrowth = 1000;
+  return kGrowth * 10 * static_cast<Real>(steps) * 0x1p-53;
+}
+
+/// Expects that the device takes all steps, with the motion and the work of the CPU.
+inline void expect_motion_of_cpu(const Scene& scene, std::uint32_t steps) {
+  Simulation device = make_on_device(scene);
+  Simulation cpu = make_simulation(scene);
+  const AdvanceReport report = device.advance(steps);
+  const AdvanceReport expected = cpu.advance(steps);
+  EXPECT_EQ(report.device_steps, steps) << expected.wall_stops << " stops of the CPU";
+  EXPECT_EQ(report.steps, expected.steps);
+  EXPECT_EQ(report.force_evaluations, expected.force_evaluations);
+  EXPECT_EQ(report.wall_stops, expected.wall_stops);
+  EXPECT_EQ(report.iterations.damping, expected.iterations.damping);
+  EXPECT_EQ(expected.undone_steps, 0U);
+  EXPECT_LT(difference(device, cpu), rounding_after(steps));
+}
+
 /// Returns a fixed rigid body of the material "stone".
 inline BodyDescription make_fixed(const std::string& name, const Shape& shape, Real spacing) {
   BodyDescription body{name, BodyKind::rigid, "stone", shape, spacing};
@@ -142,6 +164,56 @@ inline void expect_steps_of_cpu(const Scene& scene, std::uint32_t steps) {
   EXPECT_EQ(report.undone_steps, expected.undone_steps);
   EXPECT_EQ(report.steps, expected.steps);
   EXPECT_EQ(report.wall_stops, expected.wall_stops);
+  EXPECT_EQ(device.state_hash(), cpu.state_hash());
+}
+
+/// Expects equal bits after ten steps in one call and in calls of 3 and 7 steps, `rounds` times,
+/// and after a snapshot is restored.
+inline void expect_same_bits_in_any_portions(const Scene& scene, std::uint32_t rounds) {
+  Simulation one = make_on_device(scene);
+  Simulation other = make_on_device(scene);
+  one.advance(10 * rounds);
+  for (std::uint32_t n = 0; n < 2 * rounds; ++n) other.advance(n % 2 == 0 ? 3 : 7);
+  EXPECT_EQ(one.state_hash(), other.state_hash());
+  const Snapshot middle = one.snapshot();
+  one.advance(20);
+  const std::uint64_t end = one.state_hash();
+  one.restore(middle);
+  EXPECT_EQ(one.advance(20).device_steps, 20U);
+  EXPECT_EQ(one.state_hash(), end);
+}
+
+/// Expects that the device continues a state of the CPU, and the reverse, with this tolerance of
+/// positions after `steps` steps [m].
+inline void expect_continuation(const Scene& scene, std::uint32_t steps, Real tolerance) {
+  Simulation cpu = make_simulation(scene);
+  cpu.advance(steps);
+  Simulation device = Simulation::from(cpu.snapshot());
+  EXPECT_EQ(device.state_hash(), cpu.state_hash());
+  ASSERT_TRUE(device.set_engine(make_device()).ok());
+  EXPECT_EQ(device.advance(steps).device_steps, steps);
+  cpu.advance(steps);
+  EXPECT_LT(difference(device, cpu), tolerance);
+  Simulation back = Simulation::from(device.snapshot());
+  EXPECT_EQ(back.state_hash(), device.state_hash());
+  EXPECT_EQ(back.advance(steps).device_steps, 0U);
+  device.advance(steps);
+  EXPECT_LT(difference(back, device), tolerance);
+}
+
+/// Expects that the device has its state before a call if a step of the call fails. The first
+/// `good` steps succeed, and one of the next `bad` steps fails.
+inline void expect_restored_state(const Scene& scene, std::uint32_t good, std::uint32_t bad) {
+  Simulation device = make_on_device(scene);
+  EXPECT_EQ(device.advance(good).device_steps, good);
+  Simulation twin = make_on_device(scene);
+  twin.advance(good);
+  Simulation cpu = Simulation::from(twin.snapshot());
+  const AdvanceReport report = device.advance(bad);
+  const AdvanceReport expected = cpu.advance(bad);
+  EXPECT_EQ(report.device_steps, 0U);
+  EXPECT_EQ(report.steps, expected.steps);
+  EXPECT_EQ(report.least_step, expected.least_step);
   EXPECT_EQ(device.state_hash(), cpu.state_hash());
 }
 

@@ -1,4 +1,4 @@
-#include "core/device/liquid/device_motion.h"
+#include "core/device/common/device_motion.h"
 
 #include <algorithm>
 

@@ -2,7 +2,7 @@
 
 // Prefix sums of `values` in blocks of SCAN_BLOCK. The last one writes the total behind the end.
 #define SCAN_ITEMS 4
-#define SCAN_GROUP 256
+#define SCAN_GROUP GROUP
 #define SCAN_BLOCK (SCAN_ITEMS * SCAN_GROUP)
 
 // Replaces the values of a group by the sums of the values before them. Returns the total.
@@ -72,21 +72,13 @@ kernel void scatter(const int count, global const int* cell_of, global const int
   if (i < count) unsorted[begins[cell_of[i]] + rank[i]] = i;
 }
 
-// Copies the particles in the order of cells. Within a cell, they are in the order of particles,
+// The position of a particle in the order of cells. Within a cell, this is the order of particles,
 // because the order of atomic operations differs from run to run.
-kernel void collect(const int count, global const int* cell_of, global const int* begins,
-                    global const int* unsorted, global const int4* place,
-                    global const float4* motion, global int* order, global int4* sorted_place,
-                    global float4* sorted_motion) {
-  const int t = get_global_id(0);
-  if (t >= count) return;
-  const int i = unsorted[t];
+int slot_in_cell(int i, global const int* cell_of, global const int* begins,
+                 global const int* unsorted) {
   const int begin = begins[cell_of[i]];
   const int end = begins[cell_of[i] + 1];
   int slot = begin;
   for (int k = begin; k < end; ++k) slot += unsorted[k] < i;
-  order[slot] = i;
-  sorted_place[slot] = place[i];
-  sorted_motion[slot] = motion[i];
+  return slot;
 }
-

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/device/opencl/program.h"
+#include "core/types.h"
+
+/// Conversions to arguments of kernels.
+namespace vat {
+
+inline void store(const Vec3& from, double (&to)[3]) {
+  for (int k = 0; k < 3; ++k) to[k] = from[k];
+}
+inline void store(const Vec3& from, float (&to)[3]) {
+  for (int k = 0; k < 3; ++k) to[k] = static_cast<float>(from[k]);
+}
+
+/// Stores the rows one after the other.
+inline void store(const Mat3& from, double (&to)[9]) {
+  for (int k = 0; k < 9; ++k) to[k] = from(k / 3, k % 3);
+}
+/// Stores x, y, z and w.
+inline void store(const Quat& from, double (&to)[4]) {
+  for (int k = 0; k < 4; ++k) to[k] = from.coeffs()[k];
+}
+
+/// Returns the number of groups of work-items for `particles`, each of which has a partial result.
+inline std::int32_t groups_of(std::size_t particles) {
+  constexpr std::size_t kGroup = opencl::Program::kGroup;
+  return static_cast<std::int32_t>((particles + kGroup - 1) / kGroup);
+}
+
+}  // namespace vat

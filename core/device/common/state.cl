@@ -1,0 +1,57 @@
+// The check of states, and sums over all particles.
+
+#pragma OPENCL EXTENSION cl_khr_fp64 : enable
+#ifdef VAT_EXACT
+#pragma OPENCL FP_CONTRACT OFF
+#endif
+
+// Work-items of a group.
+#define GROUP 256
+
+// Counters, see Counters.
+enum { kFault = 0, kStops = 1 };
+
+// Whether a position is in the domain, and the velocity is not too great. In this form, a NaN
+// fails.
+bool is_within(const double* low, const double* high, double greatest_speed2, const double* x,
+               const double* v) {
+  bool sound = v[0] * v[0] + v[1] * v[1] + v[2] * v[2] <= greatest_speed2;
+  for (int k = 0; k < 3; ++k) sound = sound && x[k] >= low[k] && x[k] <= high[k];
+  return sound;
+}
+
+// Each sum is a fixed tree: first over a group, then over the partial sums of the groups.
+
+// The maximum, and `a` if the comparison fails because of a NaN.
+double greater(double a, double b) {
+  return a < b ? b : a;
+}
+
+double4 combined(double4 a, double4 b) {
+  return (double4)(a.x + b.x, a.y + b.y, a.z + b.z, greater(a.w, b.w));
+}
+
+// The sums of the first three components over the group, and the maximum of the fourth one.
+double4 sum_group(local double4* sums, double4 own) {
+  const int t = get_local_id(0);
+  sums[t] = own;
+  barrier(CLK_LOCAL_MEM_FENCE);
+  for (int width = GROUP / 2; width > 0; width /= 2) {
+    if (t < width) sums[t] = combined(sums[t], sums[t + width]);
+    barrier(CLK_LOCAL_MEM_FENCE);
+  }
+  return sums[0];
+}
+
+void write_partial(local double4* sums, double4 own, global double4* partial) {
+  const double4 total = sum_group(sums, own);
+  if (get_local_id(0) == 0) partial[get_group_id(0)] = total;
+}
+
+// The total of the partial sums, for one group.
+double4 sum_partial(local double4* sums, int count, global const double4* partial) {
+  double4 own = 0;
+  for (int n = get_local_id(0); n < count; n += GROUP) own = combined(own, partial[n]);
+  return sum_group(sums, own);
+}
+

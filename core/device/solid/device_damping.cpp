@@ -1,0 +1,156 @@
+#include "core/device/solid/device_damping.h"
+
+#include <algorithm>
+#include <span>
+
+#include "core/damping/damping_solve.h"
+#include "core/device/common/kernel_values.h"
+
+namespace vat {
+namespace {
+
+using opencl::Program;
+
+constexpr int kFurtherIterations = 2;  // in a batch, if a solve needs more than expected
+constexpr std::size_t kColumn = 3 * sizeof(double);
+
+/// The struct DampingProgress of damping.cl.
+struct DampingProgress {
+  double error;
+  double size;
+  double permitted;
+  double length;
+  double share;
+  std::int32_t iterations;
+  std::int32_t is_open;
+};
+
+std::int32_t number_of(std::size_t count) {
+  return static_cast<std::int32_t>(count);
+}
+
+/// The bytes of the partial sums of the groups of particles and of the rigid bodies.
+std::size_t bytes_of_sums(const Model& model) {
+  return (static_cast<std::size_t>(groups_of(model.particle_count)) + model.rigid_bodies.size()) *
+         4 * sizeof(double);
+}
+
+/// The bytes of a vector of the solve: particles, and two entries for each rigid body.
+std::size_t bytes_of_vector(const Model& model) {
+  return (model.particle_count + 2 * model.rigid_bodies.size()) * kColumn;
+}
+
+}  // namespace
+
+DeviceDamping::DeviceDamping(Program& program, const Model& model)
+    : program_(program),
+      free_(model.free_count),
+      count_(model.particle_count),
+      bodies_(model.rigid_bodies.size()),
+      change_(program, bytes_of_vector(model)),
+      change_of_force_(program, bytes_of_vector(model)),
+      residual_(program, bytes_of_vector(model)),
+      direction_(program, bytes_of_vector(model)),
+      multiplied_(program, bytes_of_vector(model)),
+      torque_(program, count_ * kColumn),
+      spin_change_(program, model.bodies.size() * kColumn),
+      partial_(program, bytes_of_sums(model)),
+      momenta_(program, bytes_of_sums(model)),
+      progress_(program, sizeof(DampingProgress)) {
+  program.fill_with_zeros(spin_change_, model.bodies.size() * kColumn);
+  for (std::size_t i = 0; i < free_; ++i) {
+    if (model.inverse_mass[i] > 0) total_mass_ += model.mass[i];
+  }
+  for (const RigidModel& rigid : model.rigid_bodies) {
+    if (rigid.free_from == 0) total_mass_ += rigid.mass;
+  }
+}
+
+std::size_t DeviceDamping::bytes_for(const Model& model) {
+  return 5 * bytes_of_vector(model) + (model.particle_count + model.bodies.size()) * kColumn +
+         2 * bytes_of_sums(model) + sizeof(DampingProgress);
+}
+
+void DeviceDamping::begin(const DampingParameters& damping, const PlacedSolids& solids,
+                          const opencl::Buffer& force) {
+  const std::int32_t groups = groups_of(free_);
+  const DeviceRigidBodies& r = solids.rigid;
+  if (free_ > 0) {
+    program_.run("begin_damping", free_, damping, solids.tables.mass, solids.tables.mobility,
+                 solids.predicted, force, change_, change_of_force_, residual_, direction_,
+                 partial_, momenta_);
+  }
+  if (bodies_ > 0) {
+    program_.run("begin_damping_of_bodies", bodies_, damping, number_of(bodies_), number_of(count_),
+                 groups, r.rigid, r.poses, r.force, change_, change_of_force_, residual_,
+                 direction_, partial_, momenta_);
+  }
+  program_.run("open_damping", Program::kGroup, damping, groups + number_of(bodies_), partial_,
+               momenta_, progress_);
+}
+
+void DeviceDamping::iterate(const SolidParameters& p, const DampingParameters& damping,
+                            const PlacedSolids& solids) {
+  const SolidTables& t = solids.tables;
+  const DeviceRigidBodies& r = solids.rigid;
+  const std::int32_t first = number_of(count_);
+  const std::int32_t bodies = number_of(bodies_);
+  constexpr std::size_t kOne = Program::kGroup;
+  if (free_ > 0) {
+    program_.run("turn_damping", free_, damping, progress_, t.mobility, residual_, direction_);
+  }
+  if (bodies_ > 0) {
+    program_.run("turn_damping_of_bodies", bodies_, bodies, first, progress_, r.rigid, r.poses,
+                 residual_, direction_, spin_change_);
+    program_.run("pose_damping", count_ - free_, p, progress_, r.rigid_of, r.poses, solids.position,
+                 direction_);
+  }
+  program_.run("multiply_damping", count_, p, damping, progress_, solids.cells.begins, solids.order,
+               solids.sorted_position, solids.position, solids.predicted, direction_, r.spins,
+               spin_change_, t.mass, t.radius, t.body_of, t.bodies, t.laws, t.exclusion_begin,
+               t.exclusions, t.spring_begin, t.springs, multiplied_, torque_, partial_);
+  if (bodies_ > 0) {
+    program_.run("multiply_damping_of_bodies", bodies_ * kOne, damping, first, groups_of(count_),
+                 r.rigid, r.poses, solids.position, torque_, direction_, multiplied_, partial_);
+  }
+  program_.run("find_damping_length", kOne, groups_of(count_) + bodies, partial_, progress_);
+  if (free_ > 0) {
+    program_.run("advance_damping", free_, damping, progress_, t.mass, t.mobility, direction_,
+                 multiplied_, change_, change_of_force_, residual_, partial_);
+  }
+  if (bodies_ > 0) {
+    program_.run("advance_damping_of_bodies", bodies_, damping, bodies, first, groups_of(free_),
+                 progress_, r.rigid, r.poses, direction_, multiplied_, change_, change_of_force_,
+                 residual_, partial_);
+  }
+  program_.run("end_damping_iteration", kOne, damping, groups_of(free_) + bodies, partial_,
+               progress_);
+}
+
+std::uint32_t DeviceDamping::solve(const SolidParameters& p, const PlacedSolids& solids, Real dt,
+                                   const opencl::Buffer& force) {
+  const DampingParameters damping{dt,
+                                  total_mass_,
+                                  kDampingTolerance * kDampingTolerance,
+                                  kDampingVelocityTolerance * kDampingVelocityTolerance,
+                                  number_of(free_),
+                                  kMaxDampingPasses};
+  begin(damping, solids, force);
+  DampingProgress progress{};
+  int batch = std::max(1, expected_);
+  do {
+    // Iterations after the end of a solve have no effect.
+    for (int n = 0; n < batch; ++n) iterate(p, damping, solids);
+    program_.read(progress_, std::span(&progress, 1));
+    batch = kFurtherIterations;
+  } while (progress.is_open != 0);
+  if (free_ > 0) program_.run("end_damping", free_, damping, change_of_force_, force);
+  if (bodies_ > 0) {
+    program_.run("end_damping_of_bodies", bodies_, number_of(bodies_), number_of(count_),
+                 solids.rigid.rigid, change_of_force_, solids.rigid.force);
+  }
+  expected_ = progress.iterations;
+  return static_cast<std::uint32_t>(progress.iterations);
+}
+
+}  // namespace vat

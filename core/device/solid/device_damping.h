@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/device/common/device_cells.h"
+#include "core/device/opencl/program.h"
+#include "core/device/solid/device_rigid_bodies.h"
+#include "core/device/solid/solid_geometry.h"
+#include "core/device/solid/solid_tables.h"
+
+namespace vat {
+
+/// The struct Damping of damping.cl.
+struct DampingParameters {
+  double dt;
+  double total_mass;
+  double tolerance2;
+  double velocity_tolerance2;
+  std::int32_t count;
+  std::int32_t most_iterations;
+};
+
+/// The present particles of bodies on a device, for sums over their neighbours.
+struct PlacedSolids {
+  const SolidTables& tables;
+  const DeviceCells& cells;
+  const opencl::Buffer& order;
+  const opencl::Buffer& sorted_position;
+  const opencl::Buffer& position;
+  const opencl::Buffer& predicted;  ///< velocities in forces
+  const DeviceRigidBodies& rigid;
+};
+
+/// Converts forces to those at the velocities after a step, as solve_damping(), on a device. The
+/// device ends a solve if a tolerance is met. Therefore, the batches of the host do not change the
+/// number of iterations. The functions throw opencl::DeviceFailure.
+class DeviceDamping {
+ public:
+  DeviceDamping(opencl::Program& program, const Model& model);
+
+  /// Returns the bytes of the buffers.
+  static std::size_t bytes_for(const Model& model);
+
+  /// Changes the forces on particles, `force`, and on rigid bodies. The forces act for `dt` [s].
+  /// `p` are the parameters of the forces. Returns the number of iterations.
+  std::uint32_t solve(const SolidParameters& p, const PlacedSolids& solids, Real dt,
+                      const opencl::Buffer& force);
+
+ private:
+  void begin(const DampingParameters& damping, const PlacedSolids& solids,
+             const opencl::Buffer& force);
+  void iterate(const SolidParameters& p, const DampingParameters& damping,
+               const PlacedSolids& solids);
+
+  opencl::Program& program_;
+  const std::size_t free_;    ///< free particles
+  const std::size_t count_;   ///< all particles
+  const std::size_t bodies_;  ///< rigid bodies
+  Real total_mass_ = 0;       ///< of the particles and rigid bodies that can move [kg]
+  int expected_ = 1;          ///< iterations of the last solve
+  opencl::Buffer change_, change_of_force_, residual_, direction_, multiplied_;
+  opencl::Buffer torque_;       ///< of friction, by particle
+  opencl::Buffer spin_change_;  ///< of the direction, by body of the scene
+  opencl::Buffer partial_, momenta_, progress_;
+};
+
+}  // namespace vat

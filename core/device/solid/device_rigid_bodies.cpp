@@ -1,0 +1,182 @@
+#include "core/device/solid/device_rigid_bodies.h"
+
+#include <algorithm>
+#include <span>
+
+#include "core/device/common/kernel_values.h"
+#include "core/limits.h"
+#include "core/support/check.h"
+
+namespace vat {
+namespace {
+
+using opencl::Buffer;
+using opencl::Program;
+
+/// The struct Rigid of rigid.cl.
+struct RigidConstants {
+  double mass;
+  double inverse_mass;
+  double extent;
+  double greatest_speed;
+  double greatest_inverse_moment;
+  double inertia[9];
+  double inverse_inertia[9];
+  double principal_axes[4];
+  double inverse_moments[3];
+  std::int32_t splitting[3];
+  std::int32_t begin;
+  std::int32_t end;
+  std::int32_t body;
+  std::int32_t is_held;
+  std::int32_t padding;
+};
+
+constexpr std::size_t kRigidVector = 3 * sizeof(double);
+constexpr std::size_t kResultant = 2 * kRigidVector;
+
+RigidConstants constants_of(const Model& model, const GuardBounds& bounds, std::size_t b) {
+  const RigidModel& rigid = model.rigid_bodies[b];
+  RigidConstants c{};
+  c.mass = rigid.mass;
+  c.inverse_mass = rigid.inverse_mass;
+  c.extent = bounds.extent[b];
+  c.greatest_speed = std::min(kMaxSpeed, bounds.travel[rigid.body] / model.scene.numerics.step);
+  c.greatest_inverse_moment = rigid.inverse_moments.maxCoeff();
+  store(rigid.inertia, c.inertia);
+  store(rigid.inverse_inertia, c.inverse_inertia);
+  store(rigid.principal_axes, c.principal_axes);
+  store(rigid.inverse_moments, c.inverse_moments);
+  std::ranges::copy(rigid.splitting, c.splitting);
+  c.begin = static_cast<std::int32_t>(rigid.particles.begin);
+  c.end = static_cast<std::int32_t>(rigid.particles.end);
+  c.body = static_cast<std::int32_t>(rigid.body);
+  c.is_held = rigid.free_from > 0 ? 1 : 0;
+  return c;
+}
+
+std::size_t at_least_one(std::size_t count) {
+  return std::max<std::size_t>(1, count);
+}
+
+}  // namespace
+
+DeviceRigidBodies::DeviceRigidBodies(Program& program, const Model& model,
+                                     const GuardBounds& bounds)
+    : rigid(program, at_least_one(model.rigid_bodies.size()) * sizeof(RigidConstants)),
+      rigid_of(program,
+               at_least_one(model.particle_count - model.free_count) * sizeof(std::int32_t)),
+      poses(program, at_least_one(model.rigid_bodies.size()) * sizeof(Pose)),
+      force(program, at_least_one(model.rigid_bodies.size()) * kResultant),
+      spins(program, model.bodies.size() * kRigidVector),
+      torque(program, model.particle_count * kRigidVector),
+      loads(program, model.particle_count * 2 * sizeof(double)),
+      program_(program),
+      count_(model.rigid_bodies.size()),
+      particles_(model.particle_count - model.free_count),
+      local_position_(program, at_least_one(particles_) * kRigidVector),
+      speeds_(program, model.bodies.size() * kRigidVector),
+      saved_poses_(program, at_least_one(count_) * sizeof(Pose)),
+      saved_force_(program, at_least_one(count_) * kResultant) {
+  program.fill_with_zeros(spins, model.bodies.size() * kRigidVector);
+  if (count_ == 0) return;
+  std::vector<RigidConstants> constants;
+  std::vector<std::int32_t> owners(particles_);
+  for (std::size_t b = 0; b < count_; ++b) {
+    constants.push_back(constants_of(model, bounds, b));
+    const IndexRange& particles = model.rigid_bodies[b].particles;
+    std::fill(owners.begin() + (particles.begin - model.free_count),
+              owners.begin() + (particles.end - model.free_count), static_cast<std::int32_t>(b));
+  }
+  program.write(rigid, std::span<const RigidConstants>(constants));
+  program.write(rigid_of, std::span<const std::int32_t>(owners));
+  program.write(local_position_, std::span<const Vec3>(model.local_position));
+}
+
+std::size_t DeviceRigidBodies::bytes_for(const Model& model) {
+  return model.rigid_bodies.size() * (sizeof(RigidConstants) + 2 * (sizeof(Pose) + kResultant)) +
+         (model.particle_count - model.free_count) * (kRigidVector + sizeof(std::int32_t)) +
+         model.bodies.size() * 2 * kRigidVector +
+         model.particle_count * (kRigidVector + 2 * sizeof(double));
+}
+
+void DeviceRigidBodies::write(const State& state) {
+  VAT_CHECK(state.now.rigid.size() == count_ && state.forces.rigid_force.size() == count_ &&
+            state.forces.rigid_torque.size() == count_);
+  if (count_ == 0) return;
+  read_poses_.clear();
+  read_forces_.clear();
+  for (std::size_t b = 0; b < count_; ++b) {
+    const RigidState& body = state.now.rigid[b];
+    Pose& pose = read_poses_.emplace_back();
+    store(body.center_of_mass, pose.center);
+    store(body.orientation, pose.orientation);
+    store(body.momentum, pose.momentum);
+    store(body.angular_momentum, pose.angular_momentum);
+    read_forces_.push_back(state.forces.rigid_force[b]);
+    read_forces_.push_back(state.forces.rigid_torque[b]);
+  }
+  program_.write(poses, std::span<const Pose>(read_poses_));
+  program_.write(force, std::span<const Vec3>(read_forces_));
+}
+
+void DeviceRigidBodies::read() {
+  read_poses_.resize(count_);
+  read_forces_.resize(2 * count_);
+  if (count_ == 0) return;
+  program_.read(poses, std::span(read_poses_));
+  program_.read(force, std::span(read_forces_));
+}
+
+void DeviceRigidBodies::copy_to(State& state) const {
+  for (std::size_t b = 0; b < count_; ++b) {
+    const Pose& pose = read_poses_[b];
+    RigidState& body = state.now.rigid[b];
+    body.center_of_mass = Vec3(pose.center);
+    body.orientation = Quat(pose.orientation);
+    body.momentum = Vec3(pose.momentum);
+    body.angular_momentum = Vec3(pose.angular_momentum);
+    state.forces.rigid_force[b] = read_forces_[2 * b];
+    state.forces.rigid_torque[b] = read_forces_[2 * b + 1];
+  }
+}
+
+void DeviceRigidBodies::save() {
+  if (count_ == 0) return;
+  program_.copy(poses, saved_poses_, count_ * sizeof(Pose));
+  program_.copy(force, saved_force_, count_ * kResultant);
+}
+
+void DeviceRigidBodies::restore() {
+  if (count_ == 0) return;
+  program_.copy(saved_poses_, poses, count_ * sizeof(Pose));
+  program_.copy(saved_force_, force, count_ * kResultant);
+}
+
+void DeviceRigidBodies::move(const SolidParameters& p, Real step, const Buffer& counters) {
+  if (count_ == 0) return;
+  program_.run("move_rigid_bodies", count_, p, static_cast<std::int32_t>(count_), step, rigid,
+               force, poses, speeds_, spins, counters);
+}
+
+void DeviceRigidBodies::finish(const SolidParameters& p, Real step, const Buffer& counters) {
+  if (count_ == 0) return;
+  program_.run("finish_rigid_bodies", count_, p, static_cast<std::int32_t>(count_), step, rigid,
+               force, poses, counters);
+}
+
+void DeviceRigidBodies::pose(const SolidParameters& p, const Buffer& position,
+                             const Buffer& predicted, const Buffer& counters) {
+  if (count_ == 0) return;
+  program_.run("pose_rigid_particles", particles_, p, rigid, rigid_of, local_position_, poses,
+               speeds_, spins, position, predicted, counters);
+}
+
+void DeviceRigidBodies::gather(bool has_friction, const Buffer& position, const Buffer& radius,
+                               const Buffer& particle_force, const Buffer& bounds) {
+  if (count_ == 0) return;
+  program_.run("gather_rigid_forces", count_ * Program::kGroup, std::int32_t{has_friction}, rigid,
+               poses, position, radius, particle_force, torque, loads, force, bounds);
+}
+
+}  // namespace vat

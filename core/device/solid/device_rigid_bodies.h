@@ -1,0 +1,66 @@
+#pragma once
+
+#include <vector>
+
+#include "core/device/opencl/program.h"
+#include "core/device/solid/solid_geometry.h"
+#include "core/guard/guard.h"
+#include "core/model/model.h"
+#include "core/state/state.h"
+
+namespace vat {
+
+/// Rigid bodies on a device, see rigid.cl. The functions have no effect if there are none. They
+/// throw opencl::DeviceFailure.
+class DeviceRigidBodies {
+ public:
+  DeviceRigidBodies(opencl::Program& program, const Model& model, const GuardBounds& bounds);
+
+  /// Returns the bytes of the buffers.
+  static std::size_t bytes_for(const Model& model);
+
+  /// Returns the number of bodies.
+  std::size_t count() const { return count_; }
+
+  void write(const State& state);
+  /// Reads the poses and forces. The functions copy_to() then write them.
+  void read();
+  void copy_to(State& state) const;
+  /// Saves the present state, or returns to the saved one.
+  void save();
+  void restore();
+
+  /// Ends a step, and begins the next one; see move_rigid_bodies.
+  void move(const SolidParameters& p, Real step, const opencl::Buffer& counters);
+  /// Ends the last step of a call.
+  void finish(const SolidParameters& p, Real step, const opencl::Buffer& counters);
+  /// Sets the positions and velocities of the particles.
+  void pose(const SolidParameters& p, const opencl::Buffer& position,
+            const opencl::Buffer& predicted, const opencl::Buffer& counters);
+  /// Sums the forces on the particles. `bounds` receives the bound of each body.
+  void gather(bool has_friction, const opencl::Buffer& position, const opencl::Buffer& radius,
+              const opencl::Buffer& particle_force, const opencl::Buffer& bounds);
+
+  opencl::Buffer rigid, rigid_of, poses, force;
+  opencl::Buffer spins;   ///< by body of the scene; 0 for deformable bodies [rad/s]
+  opencl::Buffer torque;  ///< of friction, by particle
+  opencl::Buffer loads;   ///< ContactLoad, by particle
+
+ private:
+  /// The struct Pose of rigid.cl.
+  struct Pose {
+    double center[3];
+    double orientation[4];
+    double momentum[3];
+    double angular_momentum[3];
+  };
+
+  opencl::Program& program_;
+  const std::size_t count_;
+  const std::size_t particles_;  ///< of rigid bodies
+  opencl::Buffer local_position_, speeds_, saved_poses_, saved_force_;
+  std::vector<Pose> read_poses_;
+  std::vector<Vec3> read_forces_;  ///< force and torque of each body
+};
+
+}  // namespace vat

@@ -1,0 +1,410 @@
+// Forces on particles of deformable and rigid bodies: springs, cells with a bulk modulus, contacts, and walls.
+// Each particle sums its forces in a fixed order: contacts in the order of cells, and springs in
+// the order of their other ends.
+
+typedef struct {
+  double stiffness;
+  double damping;
+  double threshold;
+  double friction;
+} ContactLaw;
+
+typedef struct {
+  uint other;
+  double stiffness;
+  double damping;
+  double rest_length;
+} SpringEnd;
+
+typedef struct {
+  uint corners[8];
+  double volume;
+  double bulk_modulus;
+} VolumeCell;
+
+// The particle whose forces are summed. `stiffness` and `damping` are those of ContactLoad. If
+// `is_change` is set, the sum is the change of the forces by a change w of all velocities, for
+// constant positions and drag coefficients; see DampingMatrix.
+typedef struct {
+  int index;
+  int body;
+  int is_change;
+  int is_rigid;
+  double mass;
+  double radius;
+  double3 x;
+  double3 v;
+  double3 w;
+  double3 spin;
+  double3 spin_change;
+  double3 force;
+  double3 torque;
+  double stiffness;
+  double damping;
+} Target;
+
+// A unit vector for particles at the same position, see coincident_direction().
+double3 direction_if_coincident(uint i, uint j, int dimensions) {
+  ulong bits = ((ulong)min(i, j) << 32 | max(i, j)) * 0x9e3779b97f4a7c15UL;
+  double d[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    bits ^= bits >> 29;
+    bits *= 0xbf58476d1ce4e5b9UL;
+    d[axis] = (double)(bits >> 40) - 8388608.0 + 0.5;
+  }
+  if (dimensions == 2) d[1] = 0;
+  const double3 way = (double3)(d[0], d[1], d[2]);
+  const double3 unit = way / sqrt(product(way, way));
+  return i < j ? unit : -unit;
+}
+
+double3 direction_of(double3 x, double r, int i, int j, int dimensions) {
+  return r > 0 ? x * (1 / r) : direction_if_coincident(i, j, dimensions);
+}
+
+// The drag / slip speed of friction with the rate `sticking`, see Friction::drag().
+double friction_drag(double coefficient, double sticking, double push, double3 slip) {
+  const double limit = coefficient * push;
+  const double speed = sqrt(product(slip, slip));
+  return sticking * speed > limit ? limit / speed : sticking;
+}
+
+// The other particle of a contact. `w` and `spin_change` are 0 if the target's is_change is not set.
+typedef struct {
+  int index;
+  int is_rigid;
+  double mass;
+  double radius;
+  double3 v;
+  double3 w;
+  double3 spin;
+  double3 spin_change;
+} Other;
+
+// Vectors from the centres of two particles to their friction point, see contact_arms().
+typedef struct {
+  double3 mine;
+  double3 its;
+} Arms;
+
+Arms arms_of(const Target* t, const Other* o, double3 way) {
+  Arms arms = {(double3)(0), (double3)(0)};
+  if (!t->is_rigid && !o->is_rigid) return arms;
+  const double own = !t->is_rigid ? 0 : o->is_rigid ? t->radius / (t->radius + o->radius) : 1;
+  arms.mine = -own * way;
+  arms.its = (1 - own) * way;
+  return arms;
+}
+
+double3 across(double3 v, double3 n) {
+  return v - product(v, n) * n;
+}
+
+// Adds the contact with another particle at the distance r; see add_contacts().
+void add_contact(const Solids* p, ContactLaw law, const Other* o, double3 x, double r,
+                 double threshold, Target* t) {
+  const double3 n = direction_of(x, r, t->index, o->index, p->dimensions);
+  const double3 relative = t->v - o->v;
+  const double speed = product(relative, n);
+  const double push = law.stiffness * (threshold - r) - law.damping * speed;
+  if (push <= 0) return;
+  t->force +=
+      t->is_change ? -(law.damping * product(t->w - o->w, n)) * n : push * n;
+  double sticking = 0;
+  if (law.friction > 0) {
+    sticking = sqrt(law.stiffness * (t->mass * o->mass / (t->mass + o->mass)));
+    const Arms arms = arms_of(t, o, r * n);
+    const double3 slip = relative - speed * n + cross_product(t->spin, arms.mine) -
+                         cross_product(o->spin, arms.its);
+    const double drag = friction_drag(law.friction, sticking, push, slip);
+    const double3 change = t->w - o->w + cross_product(t->spin_change, arms.mine) -
+                           cross_product(o->spin_change, arms.its);
+    const double3 friction = -drag * (t->is_change ? across(change, n) : slip);
+    t->force += friction;
+    t->torque += cross_product(arms.mine, friction);
+  }
+  t->stiffness += 2 * law.stiffness;
+  t->damping += 2 * fmax(law.damping, sticking);
+}
+
+// Whether two particles of one body never touch.
+bool is_excluded(global const uint* begins, global const uint* excluded, int i, uint j) {
+  uint low = begins[i];
+  uint high = begins[i + 1];
+  while (low < high) {
+    const uint middle = (low + high) / 2;
+    if (excluded[middle] < j) {
+      low = middle + 1;
+    } else {
+      high = middle;
+    }
+  }
+  return low < begins[i + 1] && excluded[low] == j;
+}
+
+// Adds the contacts with the particles in the cells around the target.
+void add_contacts(const Solids* p, global const int* begins, global const int* order,
+                  global const double4* sorted_position, global const double* predicted,
+                  global const double* change, global const double* spins,
+                  global const double* spin_changes, global const double* mass, global const double* radius,
+                  global const int* body_of, global const Body* bodies,
+                  global const ContactLaw* laws, global const uint* exclusion_begin,
+                  global const uint* exclusions, Target* t) {
+  const double at[3] = {t->x.x, t->x.y, t->x.z};
+  int low[3];
+  int high[3];
+  for (int k = 0; k < 3; ++k) {
+    low[k] = cell_of_solid(p, at[k] - p->reach, k);
+    high[k] = cell_of_solid(p, at[k] + p->reach, k);
+  }
+  const Body mine = bodies[t->body];
+  for (int z = low[2]; z <= high[2]; ++z) {
+    for (int y = low[1]; y <= high[1]; ++y) {
+      const int row = (z * p->cells[1] + y) * p->cells[0];
+      const int end = begins[row + high[0] + 1];
+      for (int slot = begins[row + low[0]]; slot < end; ++slot) {
+        const double3 x = t->x - sorted_position[slot].xyz;
+        const double square = product(x, x);
+        if (!(square < p->reach * p->reach)) continue;
+        const int j = order[slot];
+        const int body = body_of[j];
+        const bool is_own = body == t->body;
+        if (j == t->index || (is_own && !mine.touches_itself)) continue;
+        const int other = bodies[body].material;
+        // The laws within bodies follow those between materials.
+        const ContactLaw law =
+            laws[is_own ? p->materials * p->materials + mine.material
+                        : mine.material * p->materials + other];
+        const double touching = t->radius + radius[j];
+        const double threshold = law.threshold > 0 ? law.threshold : touching;
+        if (!(square < threshold * threshold)) continue;
+        if (is_own && is_excluded(exclusion_begin, exclusions, t->index, j)) continue;
+        const double3 zero = 0;
+        const Other o = {j, j >= p->free, mass[j], radius[j], vector_at(predicted, j),
+                         t->is_change ? vector_at(change, j) : zero, vector_at(spins, body),
+                         t->is_change ? vector_at(spin_changes, body) : zero};
+        add_contact(p, law, &o, x, sqrt(square), threshold, t);
+      }
+    }
+  }
+}
+
+// Adds the springs of the target, see add_spring_forces(). `velocity` is the change of the
+// velocities if t->is_change is set.
+void add_springs(const Solids* p, global const uint* begins, global const SpringEnd* ends,
+                 global const double* position, global const double* velocity, Target* t) {
+  const double3 mine = t->is_change ? t->w : t->v;
+  for (uint s = begins[t->index]; s < begins[t->index + 1]; ++s) {
+    const SpringEnd spring = ends[s];
+    const double3 x = t->x - vector_at(position, spring.other);
+    const double r = sqrt(product(x, x));
+    const double3 n = direction_of(x, r, t->index, spring.other, p->dimensions);
+    const double speed = product(mine - vector_at(velocity, spring.other), n);
+    const double elastic = t->is_change ? 0 : spring.stiffness * (spring.rest_length - r);
+    t->force += (elastic - spring.damping * speed) * n;
+  }
+}
+
+// The other three corners of the face of the corner `c` across `axis`, see cell::face_of().
+void find_face(uint c, uint axis, uint* face) {
+  const uint i = 1u << (axis + 1) % 3;
+  const uint j = 1u << (axis + 2) % 3;
+  const bool is_odd = ((c ^ c >> 1 ^ c >> 2) & 1) != 0;
+  face[0] = is_odd ? c ^ i : c ^ j;
+  face[1] = c ^ i ^ j;
+  face[2] = is_odd ? c ^ j : c ^ i;
+}
+
+double3 quarter_turn(double3 v) {
+  return (double3)(v.z, 0, -v.x);
+}
+
+// The derivative of the volume with respect to the position of the corner `c`, see cell_slope().
+double3 slope_of_volume(global const double* position, const VolumeCell* cell, uint c,
+                        int dimensions) {
+  if (dimensions == 2) {
+    const bool is_outer = c == 0 || c == 3;
+    const uint to = cell->corners[is_outer ? 2 : 0];
+    const uint from = cell->corners[is_outer ? 1 : 3];
+    const double3 across = vector_at(position, to) - vector_at(position, from);
+    return quarter_turn(across) * (c == 3 || c == 2 ? 0.5 : -0.5);
+  }
+  const double3 own = vector_at(position, cell->corners[c]);
+  double3 sum = 0;
+  for (uint axis = 0; axis < 3; ++axis) {
+    uint face[3];
+    find_face(c, axis, face);
+    const double3 a = vector_at(position, cell->corners[face[0]]) - own;
+    const double3 b = vector_at(position, cell->corners[face[1]]) - own;
+    const double3 d = vector_at(position, cell->corners[face[2]]) - own;
+    sum += cross_product(a, b) + cross_product(b, d) + cross_product(a, d);
+  }
+  return sum / 12;
+}
+
+// The volume of a cell, see cell_volume().
+double volume_of(global const double* position, const VolumeCell* cell, int dimensions) {
+  const double3 origin = vector_at(position, cell->corners[0]);
+  if (dimensions == 2) {
+    const double3 across =
+        vector_at(position, cell->corners[2]) - vector_at(position, cell->corners[1]);
+    return product(vector_at(position, cell->corners[3]) - origin, quarter_turn(across)) / 2;
+  }
+  double sum = 0;
+  for (uint axis = 0; axis < 3; ++axis) {
+    for (uint c = 0; c < 8; c += 7) {
+      uint face[3];
+      find_face(c, axis, face);
+      const double3 q = vector_at(position, cell->corners[c]) - origin;
+      const double3 a = vector_at(position, cell->corners[face[0]]) - origin;
+      const double3 b = vector_at(position, cell->corners[face[1]]) - origin;
+      const double3 d = vector_at(position, cell->corners[face[2]]) - origin;
+      const double3 across = cross_product(b, d);
+      sum += product(q, cross_product(a, b) + across + cross_product(a, d)) + product(a, across);
+    }
+  }
+  return sum / 12;
+}
+
+kernel void find_cell_pressure(const int count, const int dimensions,
+                               global const double* position, global const VolumeCell* cells,
+                               global double* pressure) {
+  const int k = get_global_id(0);
+  if (k >= count) return;
+  const VolumeCell cell = cells[k];
+  const double volume = volume_of(position, &cell, dimensions);
+  pressure[k] = cell.bulk_modulus * (1 - volume / cell.volume);
+}
+
+// Adds the forces of the cells of the target, see add_cell_forces().
+void add_cells(const Solids* p, global const uint* begins, global const uint2* corners,
+               global const VolumeCell* cells, global const double* pressure,
+               global const double* position, Target* t) {
+  double3 sum = 0;
+  for (uint n = begins[t->index]; n < begins[t->index + 1]; ++n) {
+    const uint2 corner = corners[n];
+    const VolumeCell cell = cells[corner.x];
+    sum += pressure[corner.x] * slope_of_volume(position, &cell, corner.y, p->dimensions);
+  }
+  t->force += sum;
+}
+
+// Adds the forces of the walls, see add_wall_forces().
+void add_walls(const Solids* p, ContactLaw law, Target* t) {
+  const double threshold = law.threshold > 0 ? law.threshold : t->radius;
+  const double sticking = law.friction > 0 ? sqrt(law.stiffness * t->mass) : 0;
+  const double at[3] = {t->x.x, t->x.y, t->x.z};
+  const double v[3] = {t->v.x, t->v.y, t->v.z};
+  const double w[3] = {t->w.x, t->w.y, t->w.z};
+  int count = 0;
+  for (int wall = 0; wall < 6; ++wall) {
+    const int axis = wall / 2;
+    if (!((p->walls >> wall) & 1)) continue;
+    const double distance = distance_from_wall(p, wall, at[axis]);
+    if (distance >= threshold) continue;
+    const double side = wall % 2 == 0 ? 1 : -1;
+    const double3 n = (double3)(axis == 0 ? side : 0, axis == 1 ? side : 0, axis == 2 ? side : 0);
+    const double speed = side * (v[axis] - p->wall_velocity[axis]);
+    const double push = law.stiffness * (threshold - distance) - law.damping * speed;
+    if (push <= 0) continue;
+    ++count;
+    t->force += (t->is_change ? -law.damping * side * w[axis] : push) * n;
+    if (!(law.friction > 0)) continue;
+    const double3 arm = t->is_rigid ? -distance * n : (double3)(0);
+    const double* belt = p->speeds_of_walls + 3 * wall;
+    const double3 of_wall = (double3)(p->wall_velocity[0] + belt[0], p->wall_velocity[1] + belt[1],
+                                      p->wall_velocity[2] + belt[2]);
+    const double3 slip = across(t->v + cross_product(t->spin, arm) - of_wall, n);
+    const double drag = friction_drag(law.friction, sticking, push, slip);
+    const double3 change = t->w + cross_product(t->spin_change, arm);
+    const double3 friction = -drag * (t->is_change ? across(change, n) : slip);
+    t->force += friction;
+    t->torque += cross_product(arm, friction);
+  }
+  if (count == 0) return;
+  t->stiffness += law.stiffness;
+  t->damping += fmax(law.damping, sticking) + (count - 1) * sticking;
+}
+
+// The greater components of the values of a group.
+double2 greatest_of_group(local double2* values, double2 own) {
+  const int t = get_local_id(0);
+  values[t] = own;
+  barrier(CLK_LOCAL_MEM_FENCE);
+  for (int width = GROUP / 2; width > 0; width /= 2) {
+    if (t < width) values[t] = fmax(values[t], values[t + width]);
+    barrier(CLK_LOCAL_MEM_FENCE);
+  }
+  return values[0];
+}
+
+// The bound of the oscillations of a particle with contacts, see find_bound().
+double2 bound_of(const Target* t, double mobility, Body body) {
+  if ((t->stiffness == 0 && t->damping == 0) || mobility == 0) return 0;
+  return (double2)(body.omega2 + mobility * t->stiffness, body.rate + mobility * t->damping);
+}
+
+// A target without forces.
+Target target_at(const Solids* p, int i, double3 x, global const double* predicted,
+                 global const double* spins, global const double* mass,
+                 global const double* radius, global const int* body_of) {
+  const double3 zero = 0;
+  const Target t = {i,    body_of[i], 0,    i >= p->free, mass[i], radius[i], x,
+                    vector_at(predicted, i), zero, vector_at(spins, body_of[i]), zero, zero, zero, 0, 0};
+  return t;
+}
+
+// The forces in the order of particles, and the torques of friction. `loads` receives the loads of
+// the contacts, and `partial` the greatest bounds of free particles in groups.
+kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_solid_forces(
+    const Solids p, global const int* begins, global const int* order,
+    global const double4* sorted_position, global const double* position,
+    global const double* predicted, global const double* spins, global const double* mass,
+    global const double* mobility, global const double* radius, global const int* body_of,
+    global const Body* bodies, global const ContactLaw* laws,
+    global const uint* exclusion_begin, global const uint* exclusions,
+    global const uint* spring_begin, global const SpringEnd* springs,
+    global const uint* cell_begin, global const uint2* corners, global const VolumeCell* cells,
+    global const double* pressure, global double* force, global double* torque,
+    global double2* loads, global double2* partial) {
+  local double2 bounds[GROUP];
+  const int slot = get_global_id(0);
+  double2 own = 0;
+  if (slot < p.count) {
+    const int i = order[slot];
+    Target t =
+        target_at(&p, i, sorted_position[slot].xyz, predicted, spins, mass, radius, body_of);
+    const Body body = bodies[t.body];
+    t.force = t.mass * (double3)(p.gravity[0], p.gravity[1], p.gravity[2]);
+    if (p.reach > 0) {
+      add_contacts(&p, begins, order, sorted_position, predicted, predicted, spins, spins, mass,
+                   radius, body_of, bodies, laws, exclusion_begin, exclusions, &t);
+    }
+    if (i < p.free) {
+      add_springs(&p, spring_begin, springs, position, predicted, &t);
+      add_cells(&p, cell_begin, corners, cells, pressure, position, &t);
+    }
+    if (p.walls_push) {
+      const int of_wall = p.materials * p.materials + p.materials + body.material;
+      add_walls(&p, laws[of_wall], &t);
+    }
+    store_vector(t.force, force, i);
+    store_vector(t.torque, torque, i);
+    loads[i] = (double2)(t.stiffness, t.damping);
+    if (i < p.free) own = bound_of(&t, mobility[i], body);
+  }
+  const double2 greatest = greatest_of_group(bounds, own);
+  if (get_local_id(0) == 0) partial[get_group_id(0)] = greatest;
+}
+
+// The greatest bound of all groups and rigid bodies, and at least `least`.
+kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_bound_of_forces(
+    const int groups, const int bodies, const double2 least, global const double2* partial,
+    global const double2* of_bodies, global double2* bound) {
+  local double2 bounds[GROUP];
+  double2 own = least;
+  for (int n = get_local_id(0); n < groups; n += GROUP) own = fmax(own, partial[n]);
+  for (int b = get_local_id(0); b < bodies; b += GROUP) own = fmax(own, of_bodies[b]);
+  const double2 greatest = greatest_of_group(bounds, own);
+  if (get_local_id(0) == 0) *bound = greatest;
+}

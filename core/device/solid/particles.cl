@@ -1,0 +1,165 @@
+// Particles of deformable and rigid bodies: parameters, steps, and cells. One work-item computes one
+// particle. All numbers are in double precision. Free particles precede those of rigid bodies.
+
+typedef struct {
+  double origin[3];
+  double inverse_cell;
+  double gravity[3];
+  double offset[3];
+  double wall_low[3];
+  double wall_high[3];
+  double plane_low[3];
+  double plane_high[3];
+  double wall_velocity[3];
+  double speeds_of_walls[18];
+  double domain_low[3];
+  double domain_high[3];
+  double closing;
+  double opening;
+  double drift;
+  double prediction;
+  double reach;
+  int cells[3];
+  int walls;
+  int walls_push;
+  int free;
+  int count;
+  int materials;
+  int dimensions;
+} Solids;
+
+typedef struct {
+  double greatest_speed2;
+  double omega2;
+  double rate;
+  int material;
+  int touches_itself;
+} Body;
+
+double3 vector_at(global const double* vectors, int i) {
+  return (double3)(vectors[3 * i], vectors[3 * i + 1], vectors[3 * i + 2]);
+}
+
+void store_vector(double3 v, global double* vectors, int i) {
+  vectors[3 * i] = v.x;
+  vectors[3 * i + 1] = v.y;
+  vectors[3 * i + 2] = v.z;
+}
+
+double product(double3 a, double3 b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+double3 cross_product(double3 a, double3 b) {
+  return (double3)(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+}
+
+int cell_of_solid(const Solids* p, double coordinate, int axis) {
+  const double cell = floor((coordinate - p->origin[axis]) * p->inverse_cell);
+  return convert_int_sat(clamp(cell, 0.0, (double)(p->cells[axis] - 1)));
+}
+
+// Adds a particle to its cell.
+void enter_solid(const Solids* p, int i, const double* x, global int* cell_of, global int* rank,
+                 global int* cell_counts) {
+  int c[3];
+  for (int k = 0; k < 3; ++k) c[k] = cell_of_solid(p, x[k], k);
+  const int cell = (c[2] * p->cells[1] + c[1]) * p->cells[0] + c[0];
+  cell_of[i] = cell;
+  rank[i] = atomic_inc(cell_counts + cell);
+}
+
+// The distance from a wall, negative outside the vat; see wall_distance().
+double distance_from_wall(const Solids* p, int wall, double coordinate) {
+  const int axis = wall / 2;
+  const double x = coordinate - p->offset[axis];
+  return wall % 2 == 0 ? x - p->wall_low[axis] : p->wall_high[axis] - x;
+}
+
+// Moves a particle beyond walls to their planes, and removes its outward velocity.
+bool stop_at_walls(const Solids* p, double* x, double* v) {
+  bool is_stopped = false;
+  for (int wall = 0; wall < 6; ++wall) {
+    const int axis = wall / 2;
+    if (!((p->walls >> wall) & 1) || !(distance_from_wall(p, wall, x[axis]) < 0)) continue;
+    is_stopped = true;
+    const double speed = v[axis] - p->wall_velocity[axis];
+    if (wall % 2 == 0 ? speed < 0 : speed > 0) v[axis] = p->wall_velocity[axis];
+    x[axis] = wall % 2 == 0 ? p->plane_low[axis] : p->plane_high[axis];
+  }
+  return is_stopped;
+}
+
+// Ends a step: loads the particle, kicks it, stops it at walls, and checks its state.
+void end_solid_step(const Solids* p, int i, global const double* position,
+                    global const double* velocity, global const double* force, double mobility,
+                    double greatest_speed2, double* x, double* v, global int* status) {
+  for (int k = 0; k < 3; ++k) {
+    x[k] = position[3 * i + k];
+    v[k] = velocity[3 * i + k] + (p->closing * mobility) * force[3 * i + k];
+  }
+  if (!(p->closing > 0)) return;
+  bool sound = is_within(p->domain_low, p->domain_high, greatest_speed2, x, v);
+  if (mobility > 0 && stop_at_walls(p, x, v)) {
+    atomic_inc(status + kStops);
+    sound = sound && is_within(p->domain_low, p->domain_high, greatest_speed2, x, v);
+  }
+  if (!sound) atomic_or(status + kFault, 1);
+}
+
+// Ends a step, and begins the next one with a kick and a drift. Counts the particles of each cell.
+// The velocities that forces depend on are kicked by p.prediction.
+kernel void move_solids(const Solids p, global double* position, global double* velocity,
+                        global double* predicted, global const double* force,
+                        global const double* mobility, global const int* body_of,
+                        global const Body* bodies, global int* cell_of, global int* rank,
+                        global int* cell_counts, global int* status) {
+  const int i = get_global_id(0);
+  if (i >= p.count) return;
+  double x[3];
+  double v[3];
+  if (i < p.free) {
+    const double mine = mobility[i];
+    end_solid_step(&p, i, position, velocity, force, mine, bodies[body_of[i]].greatest_speed2, x,
+                   v, status);
+    for (int k = 0; k < 3; ++k) {
+      v[k] += (p.opening * mine) * force[3 * i + k];
+      x[k] += p.drift * v[k];
+      position[3 * i + k] = x[k];
+      velocity[3 * i + k] = v[k];
+      predicted[3 * i + k] = v[k] + (p.prediction * mine) * force[3 * i + k];
+    }
+  } else {
+    for (int k = 0; k < 3; ++k) x[k] = position[3 * i + k];
+  }
+  enter_solid(&p, i, x, cell_of, rank, cell_counts);
+}
+
+// Ends the last step of a call.
+kernel void finish_solids(const Solids p, global double* position, global double* velocity,
+                          global const double* force, global const double* mobility,
+                          global const int* body_of, global const Body* bodies,
+                          global int* status) {
+  const int i = get_global_id(0);
+  if (i >= p.free) return;
+  double x[3];
+  double v[3];
+  end_solid_step(&p, i, position, velocity, force, mobility[i], bodies[body_of[i]].greatest_speed2,
+                 x, v, status);
+  for (int k = 0; k < 3; ++k) {
+    position[3 * i + k] = x[k];
+    velocity[3 * i + k] = v[k];
+  }
+}
+
+// Copies the positions in the order of cells; see collect.
+kernel void collect_solids(const int count, global const int* cell_of, global const int* begins,
+                           global const int* unsorted, global const double* position,
+                           global int* order, global double4* sorted_position) {
+  const int t = get_global_id(0);
+  if (t >= count) return;
+  const int i = unsorted[t];
+  const int slot = slot_in_cell(i, cell_of, begins, unsorted);
+  order[slot] = i;
+  sorted_position[slot] = (double4)(vector_at(position, i), 0);
+}

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "core/device/common/step_moment.h"
+#include "core/guard/guard.h"
+#include "core/model/model.h"
+
+namespace vat {
+
+/// The struct Solids of core/device/solid/particles.cl, with the same members in the same order.
+struct SolidParameters {
+  double origin[3];     ///< of the cells [m]
+  double inverse_cell;  ///< [1/m]
+  double gravity[3];    ///< [m/s^2]
+  double offset[3];     ///< displacement of the vat [m]
+  double wall_low[3];   ///< without the displacement [m]
+  double wall_high[3];
+  double plane_low[3];  ///< first coordinate inside, with the displacement [m]
+  double plane_high[3];
+  double wall_velocity[3];
+  double speeds_of_walls[18];  ///< velocity of the surface of each wall relative to the vat [m/s]
+  double domain_low[3];        ///< bounds of valid positions [m]
+  double domain_high[3];
+  double closing;     ///< duration of the kick at the end of a step; 0 without [s]
+  double opening;     ///< duration of the kick at the start of a step [s]
+  double drift;       ///< [s]
+  double prediction;  ///< duration of the kick of velocities in forces [s]
+  double reach;       ///< Model::contact_reach; 0: no contacts [m]
+  std::int32_t cells[3];
+  std::int32_t walls;       ///< bit w: wall w exists
+  std::int32_t walls_push;  ///< 1: walls exert forces
+  std::int32_t free;        ///< free particles
+  std::int32_t count;       ///< all particles
+  std::int32_t materials;
+  std::int32_t dimensions;
+};
+
+/// Computes the parameters of kernels for a model of deformable and rigid bodies.
+class SolidGeometry {
+ public:
+  SolidGeometry(const Model& model, const GuardBounds& bounds);
+
+  SolidParameters at(const Model& model, const StepMoment& moment) const;
+  std::size_t cell_count() const;
+
+ private:
+  void set_grid(const Model& model);
+
+  SolidParameters constant_{};
+};
+
+}  // namespace vat

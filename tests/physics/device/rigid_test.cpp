@@ -1,0 +1,252 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "protocol/scene/scene_json.h"
+#include "tests/physics/device/on_device.h"
+#include "tests/support/scenes.h"
+
+// Rigid bodies on an OpenCL device.
+
+namespace vat::device_rigid_test {
+namespace {
+
+using namespace test;
+
+constexpr Real kSpacing = 0.04;
+
+BodyDescription make_rigid(const std::string& name, const Vec3& position, const Shape& shape) {
+  BodyDescription body{name, BodyKind::rigid, "wood", shape, kSpacing};
+  body.position = position;
+  return body;
+}
+
+/// A plate, a ball and a rod that spin and fall on the floor, on a wall, and on each other.
+Scene make_heap() {
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
+  scene.gravity = {0, 0, -9.81};
+  scene.materials = {make_material("wood", 600)};
+  scene.default_interface = {20000, 10};
+  scene.vat = Vat{{0, 0, 0}, {0.6, 0.4, 0.8}, false, {}};
+  scene.bodies = {make_rigid("plate", {0.15, 0.2, 0.1}, BoxShape{Vec3::Zero(), {0.2, 0.16, 0.08}}),
+                  make_rigid("ball", {0.2, 0.22, 0.28}, SphereShape{Vec3::Zero(), 0.08}),
+                  make_rigid("rod", {0.3, 0.2, 0.46}, BoxShape{Vec3::Zero(), {0.32, 0.08, 0.08}})};
+  scene.bodies[0].velocity = {-1, 0, -1};
+  scene.bodies[0].angular_velocity = {1, 2, 0.5};
+  scene.bodies[1].velocity = {-0.5, 0.2, -1};
+  scene.bodies[1].angular_velocity = {4, -3, 2};
+  scene.bodies[2].velocity = {0, 0, -2};
+  scene.bodies[2].angular_velocity = {-5, 1, 3};
+  scene.bodies[2].orientation = Quat(0.8, 0.1, 0.3, 0.2).normalized();
+  return scene;
+}
+
+void add_jelly(Scene& scene) {
+  scene.materials.push_back(make_material("jelly", 400));
+  scene.materials[1].springs =
+      LatticeSprings{SpringConstants{600, 1}, SpringConstants{300, 0.5}, SpringConstants{150, 0.2}};
+  BodyDescription jelly{"jelly", BodyKind::deformable, "jelly",
+                        BoxShape{Vec3::Zero(), {0.16, 0.16, 0.12}}, kSpacing};
+  jelly.position = {0.45, 0.2, 0.1};
+  jelly.velocity = {-1, 0, -1};
+  scene.bodies.push_back(std::move(jelly));
+}
+
+const SceneCase kScenes[] = {
+    {"unchanged", [](Scene&) {}},
+    {"friction", [](Scene& scene) { scene.default_interface.friction = 0.4; }},
+    {"friction on a moving floor in a sliding vat",
+     [](Scene& scene) {
+       scene.default_interface.friction = 0.4;
+       scene.vat->walls[4].velocity = {1, 0.5, 0};
+       scene.vat->motion = SlideMotion{Vec3(1, 0, 0.5).normalized(), 0.05, 0.4};
+     }},
+    {"with a deformable body", add_jelly},
+    {"with a deformable body and friction",
+     [](Scene& scene) {
+       add_jelly(scene);
+       scene.default_interface.friction = 0.4;
+     }},
+    {"fixed body with friction",
+     [](Scene& scene) {
+       scene.default_interface.friction = 0.4;
+       scene.bodies[0].fixed = true;
+       scene.bodies[0].velocity.setZero();
+       scene.bodies[0].angular_velocity.setZero();
+     }},
+    {"two dimensions",
+     [](Scene& scene) {
+       scene.dimensions = 2;
+       scene.materials[0].density = 24;  // with masses of the same size as in three dimensions
+       for (BodyDescription& body : scene.bodies) {
+         body.position.y() = 0;
+         body.velocity.y() = 0;
+         body.orientation.setIdentity();
+         body.angular_velocity = {0, 3, 0};
+       }
+       scene.vat->min.y() = -1;
+       scene.vat->max.y() = 1;
+     }},
+    {"strong damping", [](Scene& scene) { scene.default_interface.damping = 60; }},
+    {"strong damping and friction with a deformable body",
+     [](Scene& scene) {
+       add_jelly(scene);
+       scene.default_interface = {20000, 60, 0.4};
+     }},
+};
+
+// The device and the CPU compute in double precision, and differ by rounding only.
+TEST(RigidDevice, HasTheMotionOfTheCpu) {
+  for (const SceneCase& one : kScenes) {
+    SCOPED_TRACE(one.name);
+    Scene scene = make_heap();
+    one.edit(scene);
+    expect_motion_of_cpu(scene, 150);
+  }
+}
+
+TEST(RigidDevice, SolvesForStrongDamping) {
+  Scene scene = make_heap();
+  add_jelly(scene);
+  scene.default_interface = {20000, 60, 0.4};
+  EXPECT_GT(make_on_device(scene).advance(150).iterations.damping, 20U);
+}
+
+// RIG-1, a closed-form solution. The tolerance is the published error of Runge-Kutta on the
+// quaternion with this step.
+TEST(RigidDevice, TurnsAsAnAsymmetricTop) {
+  const Result<Scene> scene = read_scene_file(VAT_SOURCE_DIR "/tests/validation/scenes/RIG-1.json");
+  ASSERT_TRUE(scene.ok());
+  Simulation device = make_on_device(scene.value());
+  EXPECT_EQ(device.advance(1000).device_steps, 1000U);
+  const Quat exact(0.8831781538207485, -0.4241111687539092, 0.19388154793694798,
+                   0.05035881771388714);
+  EXPECT_LT(device.bodies()[0].pose->orientation.angularDistance(exact.normalized()), 5.23e-9);
+}
+
+// The forces of contacts between rigid bodies act at common points, also with friction.
+TEST(RigidDevice, ConservesMomentumAndAngularMomentum) {
+  constexpr std::uint32_t kSteps = 400;
+  Scene scene = make_heap();
+  scene.gravity.setZero();
+  scene.vat.reset();
+  scene.default_interface = {20000, 60, 0.4};
+  scene.bodies[1].velocity = {0, 0, -4};
+  Simulation device = make_on_device(scene);
+  const auto total = [&] {
+    std::pair<Vec3, Vec3> sum{Vec3::Zero(), Vec3::Zero()};
+    for (const BodyDiagnostics& body : device.diagnostics().bodies) {
+      sum.first += body.linear_momentum;
+      sum.second += body.angular_momentum;
+    }
+    return sum;
+  };
+  const auto before = total();
+  const Vec3 of_ball = device.diagnostics().bodies[1].linear_momentum;
+  EXPECT_EQ(device.advance(kSteps).device_steps, kSteps);
+  const auto after = total();
+  EXPECT_GT((device.diagnostics().bodies[1].linear_momentum - of_ball).norm(), 0.01) << "contacts";
+  // Each step adds ten rounding errors of momenta of at most 10 kg m/s.
+  const Real rounding = 10 * 10 * std::sqrt(Real{kSteps}) * 0x1p-53;
+  EXPECT_LT((after.first - before.first).norm(), rounding);
+  EXPECT_LT((after.second - before.second).norm(), rounding);
+}
+
+TEST(RigidDevice, HasTheSameBitsInAnyPortionsOfSteps) {
+  Scene scene = make_heap();
+  add_jelly(scene);
+  scene.default_interface = {20000, 60, 0.4};
+  expect_same_bits_in_any_portions(scene, 12);
+}
+
+TEST(RigidDevice, ContinuesAStateOfTheCpuAndTheReverse) {
+  Scene scene = make_heap();
+  add_jelly(scene);
+  scene.default_interface = {20000, 60, 0.4};
+  expect_continuation(scene, 60, rounding_after(60));
+}
+
+// Each operation is rounded as IEEE 754 defines it, so that the hash is a constant.
+TEST(RigidDevice, HasTheSameBitsOnEveryDeviceIfExact) {
+  const Result<Scene> scene =
+      read_scene_file(VAT_SOURCE_DIR "/protocol/scenes/sliding-vat-solids.json");
+  ASSERT_TRUE(scene.ok());
+  Simulation simulation = make_on_device(scene.value());
+  EXPECT_EQ(simulation.advance(500).device_steps, 500U);
+  EXPECT_EQ(simulation.state_hash(), 0x2ea157fcae37161aU);
+}
+
+/// A ball with this velocity. The greatest speed of its particles is 20 m/s.
+Scene make_ball(const Vec3& velocity, const Vec3& angular_velocity) {
+  Scene scene = make_heap();
+  scene.vat->max.z() = 4;
+  scene.bodies = {make_rigid("ball", {0.3, 0.2, 2}, SphereShape{Vec3::Zero(), 0.08})};
+  scene.bodies[0].velocity = velocity;
+  scene.bodies[0].angular_velocity = angular_velocity;
+  return scene;
+}
+
+TEST(RigidDevice, LeavesAFailedStepToTheCpu) {
+  struct Case {
+    const char* name;
+    std::uint32_t steps;
+    Vec3 velocity;
+    Vec3 angular_velocity;
+  };
+  const Case cases[] = {{"too fast", 3, {0, 0, 30}, {0, 0, 0}},
+                        {"too fast by its rotation", 1, {0, 0, -15}, {100, 0, 0}},
+                        {"too fast after the last step", 1, {0, 0, -19.995}, {0, 0, 0}},
+                        {"too fast after a step but the first", 2, {0, 0, -19.985}, {0, 0, 0}}};
+  for (const Case& one : cases) {
+    SCOPED_TRACE(one.name);
+    expect_steps_of_cpu(make_ball(one.velocity, one.angular_velocity), one.steps);
+  }
+}
+
+// A single particle has no speed by its rotation, which is limited to one radian per step.
+TEST(RigidDevice, LeavesAFastRotationToTheCpu) {
+  Scene scene = make_ball(Vec3::Zero(), {0, 0, 1200});
+  scene.bodies[0].shape = make_particles({{0, 0, 0}}, 0.1);
+  scene.bodies[0].radius = kSpacing / 2;
+  expect_steps_of_cpu(scene, 1);
+}
+
+TEST(RigidDevice, RestoresTheStateBeforeAFailedStep) {
+  expect_restored_state(make_ball({0, 0, -19.985}, {0, 0, 0}), 1, 2);
+}
+
+// Only the CPU moves a rigid body back into the vat.
+TEST(RigidDevice, LeavesABodyBeyondAWallToTheCpu) {
+  Scene scene = make_ball({0, 0, -15}, {5, 3, 0});
+  scene.bodies[0].position.z() = 0.09;
+  Simulation device = make_on_device(scene);
+  Simulation cpu = make_simulation(scene);
+  EXPECT_EQ(device.advance(5).device_steps, 0U);
+  EXPECT_GT(cpu.advance(5).wall_stops, 0U);
+  EXPECT_EQ(device.state_hash(), cpu.state_hash());
+}
+
+TEST(RigidDevice, RefusesFeaturesThatItLacks) {
+  const SceneCase cases[] = {
+      {"/bodies/0/release", [](Scene& s) { s.bodies[0].release = 1; }},
+      {"/bodies/0/axle",
+       [](Scene& s) {
+         s.bodies[0].axle = Axle{{0, 0, 1}};
+         s.bodies[0].velocity.setZero();
+         s.bodies[0].angular_velocity = {0, 0, 1};
+       }},
+      {"/bodies/0/motion",
+       [](Scene& s) {
+         s.bodies[0].velocity.setZero();
+         s.bodies[0].angular_velocity.setZero();
+         s.bodies[0].motion = SlideMotion{{1, 0, 0}, 0.1, 1};
+       }},
+      {"/bodies/0/velocity", [](Scene& s) { s.bodies[0].fixed = true; }},
+      {"/numerics/control", [](Scene& s) { s.numerics.control = StepControl::adaptive; }},
+  };
+  expect_refusals(make_heap(), cases);
+}
+
+}  // namespace
+}  // namespace vat::device_rigid_test
