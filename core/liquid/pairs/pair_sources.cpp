@@ -187,9 +187,8 @@ void PairSources::set_places(const StepContext& c) {
   LiquidScratch& buffers = c.work.of<LiquidScratch>();
   const auto set = [&](const CellSortedPoints& points, Index first) {
     for_blocks(c.runner, points.grid.order().size(), [&](std::size_t begin, std::size_t end) {
-      for (std::size_t s = begin; s < end; ++s) {
-        set_place(first + s, place_of(points, s));
-      }
+      const PlaceColumns columns = place_columns();
+      for (std::size_t s = begin; s < end; ++s) columns.set(first + s, place_of(points, s));
     });
   };
   set(buffers.liquid, 0);
@@ -202,9 +201,10 @@ void PairSources::sort_images(Images kind, TaskRunner* runner) {
   const std::span<const Index> order = group.grid.order();
   resize_closely(group.all, order.size());
   for_blocks(runner, group.count(), [&](std::size_t begin, std::size_t end) {
+    const PlaceColumns columns = place_columns();
     for (std::size_t s = begin; s < end; ++s) {
       group.all[s] = image_list_[order[s]];
-      set_place(group.first + s, image_points_[order[s]]);
+      columns.set(group.first + s, image_points_[order[s]]);
     }
   });
 }
@@ -248,16 +248,14 @@ void PairSources::make_room(std::size_t count) {
   }
 }
 
-void PairSources::set_place(std::size_t n, const Vec3& p) {
-  search_.x[n] = static_cast<float>(p.x() - search_.origin.x());
-  search_.y[n] = static_cast<float>(p.y() - search_.origin.y());
-  search_.z[n] = static_cast<float>(p.z() - search_.origin.z());
-  if (is_single_) {
-    packed_places_[n] = {grid_.coordinate(p.x(), 0), grid_.coordinate(p.y(), 1),
-                         grid_.coordinate(p.z(), 2), 0};
-  } else {
-    places_[n] = {p.x(), p.y(), p.z(), 0};
-  }
+PairSources::PlaceColumns PairSources::place_columns() {
+  return {search_.origin,
+          search_.x.data(),
+          search_.y.data(),
+          search_.z.data(),
+          grid_,
+          is_single_ ? packed_places_.data() : nullptr,
+          places_.data()};
 }
 
 /// The padding is far from all positions, and finite in single precision.

@@ -169,6 +169,28 @@ class PairSources {
 
     std::size_t count() const { return all.size(); }
   };
+  /// Columns of positions, by source.
+  struct PlaceColumns {
+    Vec3 search_origin;
+    float* search_x;
+    float* search_y;
+    float* search_z;
+    PositionGrid grid;
+    PackedPlace* packed;  ///< null: `places` is used
+    PairPlace* places;
+
+    void set(std::size_t n, const Vec3& p) const {
+      search_x[n] = static_cast<float>(p.x() - search_origin.x());
+      search_y[n] = static_cast<float>(p.y() - search_origin.y());
+      search_z[n] = static_cast<float>(p.z() - search_origin.z());
+      if (packed != nullptr) {
+        packed[n] = {grid.coordinate(p.x(), 0), grid.coordinate(p.y(), 1),
+                     grid.coordinate(p.z(), 2), 0};
+      } else {
+        places[n] = {p.x(), p.y(), p.z(), 0};
+      }
+    }
+  };
   enum Images : std::uint8_t { shifted_solids, shifted_liquid, mirrored_solids, mirrored_liquid };
   static constexpr std::array kAllImages = {shifted_solids, shifted_liquid, mirrored_solids,
                                             mirrored_liquid};
@@ -209,7 +231,7 @@ class PairSources {
   }
   /// Allocates space for `count` sources and the padding. The content of this space is undefined.
   void make_room(std::size_t count);
-  void set_place(std::size_t n, const Vec3& place);
+  PlaceColumns place_columns();
   void set_places(const StepContext& c);
   void sort_images(Images kind, TaskRunner* runner);
   void add_padding(Real reach);

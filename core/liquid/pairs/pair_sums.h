@@ -52,10 +52,10 @@ struct PositionGrid {
   /// Returns the grid coordinate of `x`, clamped to [0, kCount]; 0 for a NaN.
   std::int32_t coordinate(Real x, int axis) const {
     const Real c = (x - origin[axis]) * inverse_unit;
-    if (!(c > 0)) return 0;
-    if (!(c < kCount)) return kCount;
-    // NOLINTNEXTLINE(bugprone-incorrect-roundings): c > 0, and lround() would be a function call
-    return static_cast<std::int32_t>(c + 0.5);
+    const Real above = c > 0 ? c : 0;  // without jumps, and false for a NaN
+    const Real inside = above < kCount ? above : kCount;
+    // NOLINTNEXTLINE(bugprone-incorrect-roundings): lround() would be a function call
+    return static_cast<std::int32_t>(inside + 0.5);
   }
   Vec3 place(const PackedPlace& p) const {
     return {origin.x() + unit * p.x, origin.y() + unit * p.y, origin.z() + unit * p.z};
