@@ -52,10 +52,11 @@ const kFragmentShader = /* glsl */ `
     vec2 steps = at / spacing;
     vec2 away = abs(fract(steps - 0.5) - 0.5) / fwidth(steps);
     float on_line = 1.0 - min(min(away.x, away.y), 1.0);
-    vec3 light = mix(stage, sky, smoothstep(0.0, 0.5, ray.z));
+    vec3 light;
     if (is_ground) {
-      float out_of = distance(at, middle) / extent;
-      float near = exp(-1.4 * out_of * out_of);
+      vec2 out_of = (at - middle) / extent;
+      float square = dot(out_of, out_of);
+      float near = exp(-1.4 * square);
       light = mix(stage, ground, near);
       vec3 point = vec3(at, height);
       float dark = 0.0;
@@ -64,7 +65,9 @@ const kFragmentShader = /* glsl */ `
         vec3 tint = through_liquids(point);
         light = mix(light, shadow, dark) * mix(vec3(1.0), tint, 0.5 * smoothstep(0.1, 0.6, 1.0 - tint.r));
       }
-      light = mix(light, line, 0.7 * on_line * (1.0 - smoothstep(0.35, 1.0, out_of)) * (1.0 - dark));
+      light = mix(light, line, 0.7 * on_line * (1.0 - smoothstep(0.12, 1.0, square)) * (1.0 - dark));
+    } else {
+      light = mix(stage, sky, smoothstep(0.0, 0.5, ray.z));
     }
     gl_FragColor = vec4(light, 1.0);
     #include <colorspace_fragment>
@@ -104,10 +107,9 @@ export class Ground {
         high: { value: new Vector3() },
       },
       depthWrite: false,
-      depthTest: false,
     });
     this.mesh = screenMesh(material);
-    this.mesh.renderOrder = -1;
+    this.mesh.renderOrder = 1; // only the pixels that no opaque object covers
     this.paint(look);
   }
 

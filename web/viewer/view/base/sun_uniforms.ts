@@ -1,4 +1,4 @@
-import { Matrix4 } from 'three';
+import { Matrix4, Vector2 } from 'three';
 import type { DepthTexture, IUniform, Texture } from 'three';
 import { kSun } from './light';
 
@@ -12,13 +12,26 @@ export interface SunUniforms {
   sun_blur: IUniform<number>;
   /** Width of a texel of the map [m]. */
   sun_texel: IUniform<number>;
-  /** Number of samples of the map for a point. */
+  /** Number of samples of the map for a point, at most kMostSamples. */
   sun_samples: IUniform<number>;
+  /** Places of the samples in a disc with the radius 1. */
+  sun_disc: IUniform<Vector2[]>;
   /** Optical depth of the liquids in rgb; 1 - depth of their nearest point in the map in alpha. */
   sun_liquid: IUniform<Texture | null>;
   /** Range of the map's depths [m]. */
   sun_range: IUniform<number>;
   floor_z: IUniform<number>;
+}
+
+const kMostSamples = 8;
+const kGoldenAngle = 2.3999632; // [rad]
+
+/** Returns evenly distributed points of a disc with the radius 1, and zeros up to kMostSamples. */
+export function discOf(samples: number): Vector2[] {
+  return Array.from({ length: kMostSamples }, (_, i) => {
+    const away = i < samples ? Math.sqrt((i + 0.5) / samples) : 0;
+    return new Vector2(Math.cos(kGoldenAngle * i), Math.sin(kGoldenAngle * i)).multiplyScalar(away);
+  });
 }
 
 /** `floor_z`: the height of the floor [m]. */
@@ -31,7 +44,8 @@ export function sunUniforms(floor_z: IUniform<number>): SunUniforms {
     to_sun: { value: new Matrix4() },
     sun_blur: { value: 0.002 },
     sun_texel: { value: 0 },
-    sun_samples: { value: 8 },
+    sun_samples: { value: kMostSamples },
+    sun_disc: { value: discOf(kMostSamples) },
   };
 }
 
@@ -42,6 +56,7 @@ export const kSunlight = /* glsl */ `
   uniform float sun_blur;
   uniform float sun_texel;
   uniform int sun_samples;
+  uniform vec2 sun_disc[${kMostSamples}];
   uniform sampler2D sun_liquid;
   uniform float sun_range;
   uniform float floor_z;
@@ -52,10 +67,7 @@ export const kSunlight = /* glsl */ `
     if (any(lessThan(at, vec3(0.0))) || any(greaterThan(at, vec3(1.0)))) return 1.0;
     float sum = 0.0;
     for (int i = 0; i < sun_samples; ++i) {
-      float angle = 2.3999632 * float(i);
-      float away = sqrt((float(i) + 0.5) / float(sun_samples));
-      vec2 aside = sun_blur * away * vec2(cos(angle), sin(angle));
-      sum += texture(sun_map, vec3(at.xy + aside, at.z - 0.0015));
+      sum += texture(sun_map, vec3(at.xy + sun_blur * sun_disc[i], at.z - 0.0015));
     }
     return sum / float(sun_samples);
   }

@@ -18,6 +18,7 @@ import { kBody } from '../particles/body_shader';
 import type { LookUniforms } from '../colour/look_uniforms';
 import { kLayers } from '../base/layers';
 import { kSunWay } from '../base/light';
+import { discOf } from '../base/sun_uniforms';
 import type { SunUniforms } from '../base/sun_uniforms';
 
 /** Width and height of the shadow map, and samples of it for a point. */
@@ -64,6 +65,7 @@ export class SunShadow {
   ) {
     const { size, samples } = isSoftware ? kCoarse : kFine;
     uniforms.sun_samples.value = samples;
+    uniforms.sun_disc.value = discOf(samples);
     this.target = new WebGLRenderTarget(size, size, { type: HalfFloatType });
     const depths = new DepthTexture(size, size, UnsignedIntType);
     depths.compareFunction = LessEqualCompare;
