@@ -5,6 +5,7 @@
 
 #include "core/damping/damping_solve.h"
 #include "core/device/incompressible/device_step_control.h"
+#include "core/device/solid/solid_geometry.h"
 
 namespace vat {
 namespace {
@@ -34,7 +35,11 @@ class Missing {
     if (is_used) errors_.push_back({"not_on_device", path, message + " on a device"});
   }
   void check_body(std::size_t index);
+  void check_materials();
   void check_laws();
+  bool is_incompressible() const {
+    return model_.liquid_count > 0 && scene_.pressure_solver == PressureSolver::incompressible;
+  }
 
   const Model& model_;
   const Scene& scene_ = model_.scene;
@@ -46,8 +51,8 @@ void Missing::check_body(std::size_t index) {
   const std::string path = "/bodies/" + std::to_string(index);
   const bool has_liquid = model_.liquid_count > 0;
   const bool is_fixed = body.kind == BodyKind::rigid && body.fixed;
-  reject(has_liquid && body.kind != BodyKind::liquid && !is_fixed, path + "/kind",
-         "must be liquid, or rigid and fixed, in a scene with a liquid");
+  reject(is_incompressible() && body.kind != BodyKind::liquid && !is_fixed, path + "/kind",
+         "must be liquid, or rigid and fixed, in a scene with an incompressible liquid");
   reject(!has_liquid && body.kind == BodyKind::liquid, path + "/kind",
          "must be deformable or rigid in a scene whose liquids have no particles");
   if (body.kind == BodyKind::liquid && has_liquid) {
@@ -56,7 +61,10 @@ void Missing::check_body(std::size_t index) {
   }
   reject(body.melting.has_value(), path + "/melting", "must be absent");
   if (body.kind != BodyKind::rigid) return;
-  reject(body.motion.has_value(), path + "/motion", "must be absent");
+  reject(body.motion.has_value() && is_incompressible(), path + "/motion",
+         "must be absent in a scene with an incompressible liquid");
+  reject(body.motion.has_value() && !body.angular_velocity.isZero(0), path + "/angular_velocity",
+         "must be 0 for a driven body");
   reject(body.axle.has_value(), path + "/axle", "must be absent");
   reject(body.release > 0 && !body.fixed, path + "/release", "must be 0");
   if (!body.fixed) return;
@@ -79,25 +87,28 @@ void Missing::check_world() {
 }
 
 void Missing::check_liquid() {
-  const bool is_incompressible = scene_.pressure_solver == PressureSolver::incompressible;
   reject(scene_.pressure_solver == PressureSolver::gas, "/pressure_solver",
          "must be tait or incompressible");
   reject(scene_.kernel != KernelId::wendland_c2, "/kernel", "must be wendland_c2");
   reject(scene_.pair_precision != PairPrecision::single_precision, "/pair_precision",
          "must be single");
   // An incompressible liquid requires symplectic Euler.
-  reject(!is_incompressible && scene_.numerics.integrator != IntegratorId::velocity_verlet,
+  reject(!is_incompressible() && scene_.numerics.integrator != IntegratorId::velocity_verlet,
          "/numerics/integrator", "must be velocity_verlet");
-  reject(is_incompressible && !scene_.forces.pressure, "/forces/pressure",
+  reject(is_incompressible() && !scene_.forces.pressure, "/forces/pressure",
          "must be true for an incompressible liquid");
   const StepControl control = scene_.numerics.control;
-  reject(!is_incompressible && control != StepControl::fixed, "/numerics/control", "must be fixed");
-  reject(is_incompressible && control == StepControl::local, "/numerics/control",
+  reject(!is_incompressible() && control != StepControl::fixed, "/numerics/control",
+         "must be fixed");
+  reject(is_incompressible() && control == StepControl::local, "/numerics/control",
          "must be fixed or adaptive");
   reject(may_solve_viscosity(model_), "/numerics/step", "must resolve the viscosity of the liquid");
   reject(model_.has_surface_tension || model_.cohesion.has_value(), "/materials",
          "must have no surface tension");
   reject(model_.is_filled, "/vat/lid", "must be false for a vat full of liquid");
+  if (!solids_move(model_)) return;
+  check_materials();
+  check_laws();
 }
 
 void Missing::check_laws() {
@@ -110,6 +121,11 @@ void Missing::check_solids() {
   reject(scene_.numerics.integrator != IntegratorId::velocity_verlet, "/numerics/integrator",
          "must be velocity_verlet");
   reject(scene_.numerics.control != StepControl::fixed, "/numerics/control", "must be fixed");
+  check_materials();
+  check_laws();
+}
+
+void Missing::check_materials() {
   for (std::size_t m = 0; m < scene_.materials.size(); ++m) {
     const Material& material = scene_.materials[m];
     const std::string path = "/materials/" + std::to_string(m);
@@ -118,7 +134,6 @@ void Missing::check_solids() {
     reject(material.tearing_strain.has_value(), path + "/tearing_strain", "must be absent");
     reject(material.elongation_limit.has_value(), path + "/elongation_limit", "must be absent");
   }
-  check_laws();
 }
 
 }  // namespace

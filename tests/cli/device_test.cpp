@@ -80,15 +80,18 @@ TEST(ChooseDevice, LeavesSmallScenesToTheCpu) {
   EXPECT_TRUE(choose_device({.is_auto = true}, small, runner, now).is_cpu);
 }
 
-// A scene with solids has no device.
+// No device has another kernel.
 TEST(ChooseDevice, MeasuresOnlyScenesThatADeviceTakes) {
   ThreadRunner runner(1);
   const TimeSource now = [] {
     ADD_FAILURE() << "a measurement";
     return std::chrono::steady_clock::time_point{};
   };
-  const Simulation mixed = start_of(test_scene("mixed"));
-  EXPECT_TRUE(choose_device({.is_auto = true}, mixed, runner, now).is_cpu);
+  Scene scene = load_scene(kDamBreak, "").value();
+  scene.kernel = KernelId::cubic_spline;
+  const Simulation other = Simulation::create(scene).value();
+  ASSERT_GE(other.particle_count(), kLeastForDevice);
+  EXPECT_TRUE(choose_device({.is_auto = true}, other, runner, now).is_cpu);
 }
 
 TEST(DeviceCommand, TakesAnAutomaticDevice) {
@@ -136,8 +139,9 @@ TEST(DeviceCommand, BenchMeasuresADeviceBesideTheCpu) {
   EXPECT_EQ(table.text(1, "instruction set"), "opencl:0");
   EXPECT_EQ(table.number(0, "steps"), table.number(1, "steps"));
   EXPECT_NE(table.text(0, "state hash"), table.text(1, "state hash"));
-  EXPECT_THAT(run_bench({"speed", "--quick", "--device", "opencl", test_scene("mixed")}),
-              exits(1, HasSubstr("/bodies/1/kind: must be liquid")));
+  const std::string clay = VAT_SOURCE_DIR "/protocol/scenes/clay.json";
+  EXPECT_THAT(run_bench({"speed", "--quick", "--device", "opencl", clay}),
+              exits(1, HasSubstr("/materials/0/plasticity: must be absent")));
 }
 
 TEST(DeviceCommand, RecordsOnADevice) {

@@ -16,10 +16,10 @@ DeviceMotion::DeviceMotion(Program& program, std::size_t particles)
   static_assert(sizeof(Vec3) == 3 * sizeof(double));
 }
 
-void DeviceMotion::write(const Configuration& from) {
-  VAT_CHECK(from.position.size() >= count_ && from.velocity.size() >= count_);
-  program_.write(position, std::span(from.position).first(count_));
-  program_.write(velocity, std::span(from.velocity).first(count_));
+void DeviceMotion::write(const Configuration& from, std::size_t first) {
+  VAT_CHECK(from.position.size() >= first + count_ && from.velocity.size() >= first + count_);
+  program_.write(position, std::span(from.position).subspan(first, count_));
+  program_.write(velocity, std::span(from.velocity).subspan(first, count_));
 }
 
 void DeviceMotion::copy_from(const DeviceMotion& other) {
@@ -35,10 +35,12 @@ void ReadMotion::read(Program& program, const DeviceMotion& from, std::size_t pa
   program.read(from.velocity, std::span(velocities_));
 }
 
-void ReadMotion::copy_to(Configuration& to) const {
-  VAT_CHECK(to.position.size() >= positions_.size() && to.velocity.size() >= velocities_.size());
-  std::ranges::copy(positions_, to.position.begin());
-  std::ranges::copy(velocities_, to.velocity.begin());
+void ReadMotion::copy_to(Configuration& to, std::size_t first) const {
+  VAT_CHECK(to.position.size() >= first + positions_.size() &&
+            to.velocity.size() >= first + velocities_.size());
+  const auto at = static_cast<std::ptrdiff_t>(first);
+  std::ranges::copy(positions_, to.position.begin() + at);
+  std::ranges::copy(velocities_, to.velocity.begin() + at);
 }
 
 }  // namespace vat

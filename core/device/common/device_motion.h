@@ -7,7 +7,7 @@
 
 namespace vat {
 
-/// Positions and velocities of a liquid on a device, in the order of the particles. The functions
+/// Positions and velocities of particles on a device, in their order. The functions
 /// throw opencl::DeviceFailure.
 class DeviceMotion {
  public:
@@ -16,8 +16,8 @@ class DeviceMotion {
   /// Returns the bytes of a particle.
   static constexpr std::size_t kBytes = 6 * sizeof(double);
 
-  /// Writes the motion of the first particles of `from`.
-  void write(const Configuration& from);
+  /// Writes the motion of the particles of `from`, beginning with particle `first`.
+  void write(const Configuration& from, std::size_t first = 0);
   void copy_from(const DeviceMotion& other);
 
   opencl::Buffer position;
@@ -32,8 +32,8 @@ class DeviceMotion {
 class ReadMotion {
  public:
   void read(opencl::Program& program, const DeviceMotion& from, std::size_t particles);
-  /// Writes the copy to the first particles of `to`.
-  void copy_to(Configuration& to) const;
+  /// Writes the copy to the particles of `to`, beginning with particle `first`.
+  void copy_to(Configuration& to, std::size_t first = 0) const;
 
  private:
   std::vector<Vec3> positions_;

@@ -20,7 +20,7 @@ std::size_t list_entries(std::size_t particles) {
 }  // namespace
 
 DeviceParticles::DeviceParticles(Program& program, const Model& model,
-                                 const LiquidGeometry& geometry)
+                                 const LiquidGeometry& geometry, std::optional<MovingSolids> moving)
     : order(program, model.particle_count * kNumber),
       sorted_place(program, model.particle_count * sizeof(Float4)),
       sorted_motion(program, model.particle_count * sizeof(Float4)),
@@ -34,24 +34,38 @@ DeviceParticles::DeviceParticles(Program& program, const Model& model,
       count_(model.particle_count),
       weight_(program, count_ * sizeof(float)),
       place_(program, count_ * sizeof(Float4)),
-      motion_(program, count_ * sizeof(Float4)) {
+      motion_(program, count_ * sizeof(Float4)),
+      moving_(moving) {
   const Real scale = model.liquids[model.material[0]]->kernel.scale();
   std::vector<float> weights;
   for (std::size_t i = 0; i < count_; ++i) {
     const auto weight = static_cast<float>(model.rest_volume[i] * scale);
     weights.push_back(i < liquid_count_ ? weight : -weight);
   }
-  if (count_ > liquid_count_) {
+  if (count_ > liquid_count_ && !moving_) {
     solid_position_ = opencl::Buffer(program, (count_ - liquid_count_) * sizeof(Vec3));
   }
   program_.write(weight_, std::span<const float>(weights));
 }
 
-std::size_t DeviceParticles::bytes_for(const Model& model, const LiquidGeometry& geometry) {
-  const std::size_t solids = model.particle_count - model.liquid_count;
-  return model.particle_count * (4 * sizeof(Float4) + 4 * kNumber) + solids * sizeof(Vec3) +
+std::size_t DeviceParticles::bytes_for(const Model& model, const LiquidGeometry& geometry,
+                                       bool solids_move) {
+  const std::size_t at_rest = solids_move ? 0 : model.particle_count - model.liquid_count;
+  return model.particle_count * (4 * sizeof(Float4) + 4 * kNumber) + at_rest * sizeof(Vec3) +
          list_entries(model.particle_count) * kNumber +
          DeviceCells::bytes_for(model.particle_count, geometry.cell_count());
+}
+
+void DeviceParticles::enter_solids(const LiquidParameters& p) {
+  const std::size_t solids = count_ - liquid_count_;
+  if (solids == 0) return;
+  if (moving_) {
+    program_.run("enter_moving_solids", solids, p, moving_->position, moving_->velocity, weight_,
+                 place_, motion_, cells.cell_of, cells.rank, cells.counts, counters.buffer);
+  } else {
+    program_.run("enter_solids", solids, p, solid_position_, weight_, place_, motion_,
+                 cells.cell_of, cells.rank, cells.counts, counters.buffer);
+  }
 }
 
 void DeviceParticles::sort() {
@@ -62,7 +76,7 @@ void DeviceParticles::sort() {
 
 void DeviceParticles::write_solids(const Configuration& from) {
   VAT_CHECK(from.position.size() == count_);
-  if (count_ == liquid_count_) return;
+  if (count_ == liquid_count_ || moving_) return;
   program_.write(solid_position_, std::span(from.position).subspan(liquid_count_));
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,17 +19,26 @@ struct Float4 {
   float x, y, z, w;
 };
 
-/// The particles of a liquid and of the solids at rest in it, on a device. They are in the order of
+/// The positions and velocities of moving solids, in the order of their particles.
+struct MovingSolids {
+  const opencl::Buffer& position;
+  const opencl::Buffer& velocity;
+};
+
+/// The particles of a liquid and of the solids in it, on a device. They are in the order of
 /// their cells, with lists of their neighbours. The functions throw opencl::DeviceFailure.
 class DeviceParticles {
  public:
-  /// Allocates the buffers for a model, and writes the weights of the particles.
-  DeviceParticles(opencl::Program& program, const Model& model, const LiquidGeometry& geometry);
+  /// Allocates the buffers for a model, and writes the weights of the particles. Solids are at rest
+  /// without `moving`.
+  DeviceParticles(opencl::Program& program, const Model& model, const LiquidGeometry& geometry,
+                  std::optional<MovingSolids> moving = {});
 
   /// Returns the bytes of the buffers on the device.
-  static std::size_t bytes_for(const Model& model, const LiquidGeometry& geometry);
+  static std::size_t bytes_for(const Model& model, const LiquidGeometry& geometry,
+                               bool solids_move = false);
 
-  /// Writes the positions of the solids.
+  /// Writes the positions of solids at rest.
   void write_solids(const Configuration& from);
 
   /// Runs the kernel `name`, which enters the liquid particles into their cells. Then enters the
@@ -39,10 +49,7 @@ class DeviceParticles {
     cells.clear();
     program_.run(name, liquid_count_, p, own..., weight_, place_, motion_, cells.cell_of,
                  cells.rank, cells.counts, counters.buffer);
-    if (count_ > liquid_count_) {
-      program_.run("enter_solids", count_ - liquid_count_, p, solid_position_, weight_, place_,
-                   motion_, cells.cell_of, cells.rank, cells.counts, counters.buffer);
-    }
+    enter_solids(p);
     sort();
   }
   /// Extrapolates the pressure to the solids, if there are any.
@@ -64,13 +71,15 @@ class DeviceParticles {
   DeviceCounters counters;
 
  private:
+  void enter_solids(const LiquidParameters& p);
   void sort();
 
   opencl::Program& program_;
   const std::size_t liquid_count_;
   const std::size_t count_;
   opencl::Buffer weight_, place_, motion_;  // in the order of particles
-  opencl::Buffer solid_position_;           ///< only with solids
+  const std::optional<MovingSolids> moving_;
+  opencl::Buffer solid_position_;  ///< only with solids at rest
 };
 
 }  // namespace vat

@@ -56,7 +56,7 @@ void LiquidGeometry::set_grid(const Model& model) {
 }
 
 LiquidGeometry::LiquidGeometry(const Model& model, const GuardBounds& bounds) {
-  VAT_CHECK(model.liquid_count == model.free_count && model.liquid_count > 0);
+  VAT_CHECK(model.liquid_count > 0);
   set_grid(model);
   const LiquidModel& liquid = *model.liquids[model.material[0]];
   store(bounds.min, constant_.domain_low);
@@ -68,6 +68,8 @@ LiquidGeometry::LiquidGeometry(const Model& model, const GuardBounds& bounds) {
   // The acceleration is force / mass, and mass / rest volume is the density.
   constant_.slope_factor = static_cast<float>(slope_factor(model, liquid) / liquid.rest_density);
   constant_.viscosity = static_cast<float>(liquid.central_viscosity / liquid.support_radius);
+  // The weight of a particle is its rest volume times the scale of the kernel.
+  constant_.solid_factor = static_cast<float>(slope_factor(model, liquid) / liquid.kernel.scale());
   for (const int wall : model.walls) constant_.walls |= 1 << wall;
   for (const int wall : model.no_slip_walls) constant_.no_slip |= 1 << wall;
   constant_.is_thick = is_thick(liquid, model.scene.dimensions) ? 1 : 0;

@@ -24,16 +24,17 @@ struct LiquidParameters {
   double drift;            ///< [s]
   double prediction;       ///< duration of the kick of velocities in viscous forces [s]
   float gravity[3];
-  float still[3];             ///< velocity that the settling drag leaves [m/s]
-  float drag;                 ///< of settling [1/s]
-  float fall[3];              ///< free fall in the frame of the vat [m/s^2]
-  float unit;                 ///< [m]
-  float in_supports;          ///< unit / support radius
-  float density;              ///< at rest [kg/m^3]
-  float layer;                ///< pressure under one layer of particles [Pa]
-  float stiffness;            ///< density times square of the speed of sound [Pa]
-  float slope_factor;         ///< acceleration / sum of pressures and gradients
-  float viscosity;            ///< central viscosity / support radius
+  float still[3];      ///< velocity that the settling drag leaves [m/s]
+  float drag;          ///< of settling [1/s]
+  float fall[3];       ///< free fall in the frame of the vat [m/s^2]
+  float unit;          ///< [m]
+  float in_supports;   ///< unit / support radius
+  float density;       ///< at rest [kg/m^3]
+  float layer;         ///< pressure under one layer of particles [Pa]
+  float stiffness;     ///< density times square of the speed of sound [Pa]
+  float slope_factor;  ///< acceleration / sum of pressures and gradients
+  float viscosity;     ///< central viscosity / support radius
+  float solid_factor;  ///< force on a solid / (its weight times sum of pressures and gradients)
   float speeds_of_walls[18];  ///< velocity of the surface of each wall [m/s]
   std::int32_t twice_low[3];  ///< 2 wall_low in integer positions
   std::int32_t twice_high[3];

@@ -222,9 +222,9 @@ bool is_viscous(const Parameters* p, const Mirror* m) {
   return p->is_thick || (walls & p->no_slip);
 }
 
-// Adds the force of the image of a source on a target.
-void add_force_of_image(const Parameters* p, const Mirror* m, const int* n, float4 mine,
-                        int4 source, float4 its, float* sum) {
+// Adds the force of the image of a source on a target. A solid has no viscous force of images.
+void add_force_of_image(const Parameters* p, const Mirror* m, const int* n, int is_target_solid,
+                        float4 mine, int4 source, float4 its, float* sum) {
   int at[3];
   for (int k = 0; k < 3; ++k) at[k] = reflected(p, m, n[k], k);
   const float3 x = way_to(p, at, source);
@@ -235,7 +235,7 @@ void add_force_of_image(const Parameters* p, const Mirror* m, const int* n, floa
   sum[0] += share * (m->axes[0] > 0 ? -x.x : x.x);
   sum[1] += share * (m->axes[1] > 0 ? -x.y : x.y);
   sum[2] += share * (m->axes[2] > 0 ? -x.z : x.z);
-  if (is_solid(source) || !is_viscous(p, m)) return;
+  if (is_target_solid || is_solid(source) || !is_viscous(p, m)) return;
   const float3 v = mirrored_velocity(p, m, its);
   const float drag = p->viscosity / (square + SOFTENING) *
                      (weight_of(source) * kernel_slope(sqrt(square)));
@@ -245,13 +245,13 @@ void add_force_of_image(const Parameters* p, const Mirror* m, const int* n, floa
 }
 
 // Adds the force of a source, or of the image of a source, on a target.
-void add_force_of(const Parameters* p, uint code, const int* n, float4 mine, int4 source,
-                  float4 its, float* sum) {
+void add_force_of(const Parameters* p, uint code, const int* n, int is_target_solid, float4 mine,
+                  int4 source, float4 its, float* sum) {
   if (code == 0) {
     add_force(p, n, mine, source, its, sum);
   } else {
     const Mirror m = mirror_of(code);
-    add_force_of_image(p, &m, n, mine, source, its, sum);
+    add_force_of_image(p, &m, n, is_target_solid, mine, source, its, sum);
   }
 }
 
@@ -264,7 +264,7 @@ float3 acceleration_of(const Parameters* p, int slot, global const int* begins,
   const int n[3] = {own.x, own.y, own.z};
   float sum[3] = {0, 0, 0};
   FOR_EACH_NEIGHBOUR(p, slot, n, begins, counts, lists, {
-    add_force_of(p, code, n, mine, sorted_place[j], sorted_motion[j], sum);
+    add_force_of(p, code, n, 0, mine, sorted_place[j], sorted_motion[j], sum);
   })
   const float v[3] = {mine.x, mine.y, mine.z};
   float a[3];
@@ -319,4 +319,25 @@ kernel void find_acceleration(const Parameters p, global const int* begins,
   if (slot >= p.count + p.solids || is_solid(sorted_place[slot])) return;
   const float3 a = acceleration_of(&p, slot, begins, sorted_place, sorted_motion, counts, lists);
   acceleration[order[slot]] = (float4)(a, 0);
+}
+
+// Adds the forces of the liquid on the particles of solids, see add_tait_forces_on_solids(). `force`
+// is indexed by solid particle.
+kernel void add_forces_on_solids(const Parameters p, global const int* begins,
+                                 global const int* order, global const int4* sorted_place,
+                                 global const float4* sorted_motion, global const int* counts,
+                                 global const uint* lists, global double* force) {
+  const int slot = get_global_id(0);
+  if (slot >= p.count + p.solids) return;
+  const int4 own = sorted_place[slot];
+  if (!is_solid(own)) return;
+  const float4 mine = sorted_motion[slot];
+  const int n[3] = {own.x, own.y, own.z};
+  float sum[3] = {0, 0, 0};
+  FOR_EACH_NEIGHBOUR(&p, slot, n, begins, counts, lists, {
+    if (is_solid(sorted_place[j])) continue;
+    add_force_of(&p, code, n, 1, mine, sorted_place[j], sorted_motion[j], sum);
+  })
+  const float factor = p.solid_factor * weight_of(own);
+  for (int k = 0; k < 3; ++k) force[3 * (order[slot] - p.count) + k] += (double)(factor * sum[k]);
 }

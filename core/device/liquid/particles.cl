@@ -1,5 +1,4 @@
-// Particles of one liquid, and of solids at rest in it, in a vat: parameters, walls, and integer
-// positions. One work-item computes one particle. Solids follow the liquid in the order of particles.
+// Particles of one liquid, and of solids in it, in a vat: parameters, walls, and integer positions. One work-item computes one particle. Solids follow the liquid in the order of particles.
 //
 // Positions and velocities are in double precision, in the order of the particles. Sums over pairs
 // are in single precision. They read copies in the order of cells, whose positions are integers:
@@ -30,6 +29,7 @@ typedef struct {
   float stiffness;
   float slope_factor;
   float viscosity;
+  float solid_factor;
   float speeds_of_walls[18];
   int twice_low[3];
   int twice_high[3];
@@ -113,7 +113,7 @@ void enter_cell(const Parameters* p, int i, const double* x, const float* w,
   rank[i] = atomic_inc(cell_counts + cell);
 }
 
-// Enters the solids into their cells.
+// Enters solids at rest into their cells.
 kernel void enter_solids(const Parameters p, global const double* solid_position,
                          global const float* weight, global int4* place, global float4* motion,
                          global int* cell_of, global int* rank, global int* cell_counts,
@@ -123,6 +123,22 @@ kernel void enter_solids(const Parameters p, global const double* solid_position
   double x[3];
   for (int k = 0; k < 3; ++k) x[k] = solid_position[3 * b + k];
   const float w[3] = {0, 0, 0};
+  enter_cell(&p, p.count + b, x, w, weight, place, motion, cell_of, rank, cell_counts, status);
+}
+
+// Enters moving solids into their cells.
+kernel void enter_moving_solids(const Parameters p, global const double* solid_position,
+                                global const double* solid_velocity, global const float* weight,
+                                global int4* place, global float4* motion, global int* cell_of,
+                                global int* rank, global int* cell_counts, global int* status) {
+  const int b = get_global_id(0);
+  if (b >= p.solids) return;
+  double x[3];
+  float w[3];
+  for (int k = 0; k < 3; ++k) {
+    x[k] = solid_position[3 * b + k];
+    w[k] = (float)solid_velocity[3 * b + k];
+  }
   enter_cell(&p, p.count + b, x, w, weight, place, motion, cell_of, rank, cell_counts, status);
 }
 

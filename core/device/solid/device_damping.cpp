@@ -31,21 +31,22 @@ std::int32_t number_of(std::size_t count) {
 
 /// The bytes of the partial sums of the groups of particles and of the rigid bodies.
 std::size_t bytes_of_sums(const Model& model) {
-  return (static_cast<std::size_t>(groups_of(model.particle_count)) + model.rigid_bodies.size()) *
+  return (static_cast<std::size_t>(groups_of(SolidRange(model).count)) +
+          model.rigid_bodies.size()) *
          4 * sizeof(double);
 }
 
 /// The bytes of a vector of the solve: particles, and two entries for each rigid body.
 std::size_t bytes_of_vector(const Model& model) {
-  return (model.particle_count + 2 * model.rigid_bodies.size()) * kColumn;
+  return (SolidRange(model).count + 2 * model.rigid_bodies.size()) * kColumn;
 }
 
 }  // namespace
 
 DeviceDamping::DeviceDamping(Program& program, const Model& model)
     : program_(program),
-      free_(model.free_count),
-      count_(model.particle_count),
+      free_(SolidRange(model).free),
+      count_(SolidRange(model).count),
       bodies_(model.rigid_bodies.size()),
       change_(program, bytes_of_vector(model)),
       change_of_force_(program, bytes_of_vector(model)),
@@ -58,7 +59,7 @@ DeviceDamping::DeviceDamping(Program& program, const Model& model)
       momenta_(program, bytes_of_sums(model)),
       progress_(program, sizeof(DampingProgress)) {
   program.fill_with_zeros(spin_change_, model.bodies.size() * kColumn);
-  for (std::size_t i = 0; i < free_; ++i) {
+  for (std::size_t i = model.liquid_count; i < model.free_count; ++i) {
     if (model.inverse_mass[i] > 0) total_mass_ += model.mass[i];
   }
   for (const RigidModel& rigid : model.rigid_bodies) {
@@ -67,7 +68,7 @@ DeviceDamping::DeviceDamping(Program& program, const Model& model)
 }
 
 std::size_t DeviceDamping::bytes_for(const Model& model) {
-  return 5 * bytes_of_vector(model) + (model.particle_count + model.bodies.size()) * kColumn +
+  return 5 * bytes_of_vector(model) + (SolidRange(model).count + model.bodies.size()) * kColumn +
          2 * bytes_of_sums(model) + sizeof(DampingProgress);
 }
 

@@ -53,8 +53,8 @@ class DeviceDamping {
                const PlacedSolids& solids);
 
   opencl::Program& program_;
-  const std::size_t free_;    ///< free particles
-  const std::size_t count_;   ///< all particles
+  const std::size_t free_;    ///< free solid particles
+  const std::size_t count_;   ///< all solid particles
   const std::size_t bodies_;  ///< rigid bodies
   Real total_mass_ = 0;       ///< of the particles and rigid bodies that can move [kg]
   int expected_ = 1;          ///< iterations of the last solve

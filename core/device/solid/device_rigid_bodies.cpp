@@ -4,6 +4,7 @@
 #include <span>
 
 #include "core/device/common/kernel_values.h"
+#include "core/laws/vat_motion.h"
 #include "core/limits.h"
 #include "core/support/check.h"
 
@@ -32,6 +33,12 @@ struct RigidConstants {
   std::int32_t padding;
 };
 
+/// The struct Drive of rigid.cl.
+struct Drive {
+  double way[3];
+  double velocity[3];
+};
+
 constexpr std::size_t kRigidVector = 3 * sizeof(double);
 constexpr std::size_t kResultant = 2 * kRigidVector;
 
@@ -48,8 +55,8 @@ RigidConstants constants_of(const Model& model, const GuardBounds& bounds, std::
   store(rigid.principal_axes, c.principal_axes);
   store(rigid.inverse_moments, c.inverse_moments);
   std::ranges::copy(rigid.splitting, c.splitting);
-  c.begin = static_cast<std::int32_t>(rigid.particles.begin);
-  c.end = static_cast<std::int32_t>(rigid.particles.end);
+  c.begin = static_cast<std::int32_t>(rigid.particles.begin - model.liquid_count);
+  c.end = static_cast<std::int32_t>(rigid.particles.end - model.liquid_count);
   c.body = static_cast<std::int32_t>(rigid.body);
   c.is_held = rigid.free_from > 0 ? 1 : 0;
   return c;
@@ -69,8 +76,8 @@ DeviceRigidBodies::DeviceRigidBodies(Program& program, const Model& model,
       poses(program, at_least_one(model.rigid_bodies.size()) * sizeof(Pose)),
       force(program, at_least_one(model.rigid_bodies.size()) * kResultant),
       spins(program, model.bodies.size() * kRigidVector),
-      torque(program, model.particle_count * kRigidVector),
-      loads(program, model.particle_count * 2 * sizeof(double)),
+      torque(program, SolidRange(model).count * kRigidVector),
+      loads(program, SolidRange(model).count * 2 * sizeof(double)),
       program_(program),
       count_(model.rigid_bodies.size()),
       particles_(model.particle_count - model.free_count),
@@ -97,7 +104,7 @@ std::size_t DeviceRigidBodies::bytes_for(const Model& model) {
   return model.rigid_bodies.size() * (sizeof(RigidConstants) + 2 * (sizeof(Pose) + kResultant)) +
          (model.particle_count - model.free_count) * (kRigidVector + sizeof(std::int32_t)) +
          model.bodies.size() * 2 * kRigidVector +
-         model.particle_count * (kRigidVector + 2 * sizeof(double));
+         SolidRange(model).count * (kRigidVector + 2 * sizeof(double));
 }
 
 void DeviceRigidBodies::write(const State& state) {
@@ -157,6 +164,32 @@ void DeviceRigidBodies::move(const SolidParameters& p, Real step, const Buffer& 
   if (count_ == 0) return;
   program_.run("move_rigid_bodies", count_, p, static_cast<std::int32_t>(count_), step, rigid,
                force, poses, speeds_, spins, counters);
+}
+
+void DeviceRigidBodies::drive_body(std::size_t b, const Vec3& way, const Vec3& velocity) {
+  Drive drive{};
+  store(way, drive.way);
+  store(velocity, drive.velocity);
+  program_.run("drive_rigid_body", 1, static_cast<std::int32_t>(b), drive, rigid, poses, speeds_);
+}
+
+void DeviceRigidBodies::drive(const Model& model, Real start, Real end) {
+  for (std::size_t b = 0; b < count_; ++b) {
+    const std::optional<SlideMotion>& motion = model.rigid_bodies[b].motion;
+    if (!motion) continue;
+    const VatMotion to = slide_motion(*motion, end);
+    drive_body(b, to.offset - slide_motion(*motion, start).offset, to.velocity);
+  }
+}
+
+void DeviceRigidBodies::begin_drive(const Model& model, Real start, Real step) {
+  for (std::size_t b = 0; b < count_; ++b) {
+    const std::optional<SlideMotion>& motion = model.rigid_bodies[b].motion;
+    if (!motion) continue;
+    const Vec3 way =
+        slide_motion(*motion, start + step).offset - slide_motion(*motion, start).offset;
+    drive_body(b, Vec3::Zero(), way / step);
+  }
 }
 
 void DeviceRigidBodies::finish(const SolidParameters& p, Real step, const Buffer& counters) {

@@ -10,8 +10,8 @@
 
 namespace vat {
 
-/// Rigid bodies on a device, see rigid.cl. The functions have no effect if there are none. They
-/// throw opencl::DeviceFailure.
+/// Rigid bodies on a device, see rigid.cl. Particles are counted from the first solid particle. The
+/// functions have no effect if there are none. They throw opencl::DeviceFailure.
 class DeviceRigidBodies {
  public:
   DeviceRigidBodies(opencl::Program& program, const Model& model, const GuardBounds& bounds);
@@ -32,6 +32,11 @@ class DeviceRigidBodies {
 
   /// Ends a step, and begins the next one; see move_rigid_bodies.
   void move(const SolidParameters& p, Real step, const opencl::Buffer& counters);
+  /// Moves the driven bodies from their positions at `start` to those at `end` [s]. They receive
+  /// the velocities at `end`.
+  void drive(const Model& model, Real start, Real end);
+  /// Gives the driven bodies their mean velocities in a step of `step` from `start` [s].
+  void begin_drive(const Model& model, Real start, Real step);
   /// Ends the last step of a call.
   void finish(const SolidParameters& p, Real step, const opencl::Buffer& counters);
   /// Sets the positions and velocities of the particles.
@@ -54,6 +59,8 @@ class DeviceRigidBodies {
     double momentum[3];
     double angular_momentum[3];
   };
+
+  void drive_body(std::size_t b, const Vec3& way, const Vec3& velocity);
 
   opencl::Program& program_;
   const std::size_t count_;

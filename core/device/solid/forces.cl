@@ -58,8 +58,8 @@ double3 direction_if_coincident(uint i, uint j, int dimensions) {
   return i < j ? unit : -unit;
 }
 
-double3 direction_of(double3 x, double r, int i, int j, int dimensions) {
-  return r > 0 ? x * (1 / r) : direction_if_coincident(i, j, dimensions);
+double3 direction_of(const Solids* p, double3 x, double r, int i, int j) {
+  return r > 0 ? x * (1 / r) : direction_if_coincident(p->first + i, p->first + j, p->dimensions);
 }
 
 // The drag / slip speed of friction with the rate `sticking`, see Friction::drag().
@@ -103,7 +103,7 @@ double3 across(double3 v, double3 n) {
 // Adds the contact with another particle at the distance r; see add_contacts().
 void add_contact(const Solids* p, ContactLaw law, const Other* o, double3 x, double r,
                  double threshold, Target* t) {
-  const double3 n = direction_of(x, r, t->index, o->index, p->dimensions);
+  const double3 n = direction_of(p, x, r, t->index, o->index);
   const double3 relative = t->v - o->v;
   const double speed = product(relative, n);
   const double push = law.stiffness * (threshold - r) - law.damping * speed;
@@ -198,7 +198,7 @@ void add_springs(const Solids* p, global const uint* begins, global const Spring
     const SpringEnd spring = ends[s];
     const double3 x = t->x - vector_at(position, spring.other);
     const double r = sqrt(product(x, x));
-    const double3 n = direction_of(x, r, t->index, spring.other, p->dimensions);
+    const double3 n = direction_of(p, x, r, t->index, spring.other);
     const double speed = product(mine - vector_at(velocity, spring.other), n);
     const double elastic = t->is_change ? 0 : spring.stiffness * (spring.rest_length - r);
     t->force += (elastic - spring.damping * speed) * n;

@@ -1,5 +1,6 @@
 // Particles of deformable and rigid bodies: parameters, steps, and cells. One work-item computes one
-// particle. All numbers are in double precision. Free particles precede those of rigid bodies.
+// particle. All numbers are in double precision. Free particles precede those of rigid bodies. The
+// index of a particle does not count the liquid.
 
 typedef struct {
   double origin[3];
@@ -26,6 +27,7 @@ typedef struct {
   int count;
   int materials;
   int dimensions;
+  int first;
 } Solids;
 
 typedef struct {

@@ -159,10 +159,11 @@ kernel void move_rigid_bodies(const Solids p, const int count, const double dt,
   Pose pose = poses[b];
   end_rigid_step(&p, &body, force, b, dt, &pose, status);
   kick_rigid(&pose, force, b, p.opening);
-  for (int k = 0; k < 3; ++k) {
-    pose.center[k] += (p.drift * body.inverse_mass) * pose.momentum[k];
-  }
+  // A driven body is held, and drive_rigid_body moves it.
   if (p.drift > 0 && !body.is_held) {
+    for (int k = 0; k < 3; ++k) {
+      pose.center[k] += (p.drift * body.inverse_mass) * pose.momentum[k];
+    }
     const double4 q = rotate_freely(&body, orientation_of(&pose), three(pose.angular_momentum),
                                     p.drift);
     pose.orientation[0] = q.x;
@@ -175,6 +176,22 @@ kernel void move_rigid_bodies(const Solids p, const int count, const double dt,
   store_vector(body.inverse_mass * three(pose.momentum), speeds, body.body);
   store_vector(spin_of(&body, orientation_of(&pose), three(pose.angular_momentum)), spins,
                body.body);
+}
+
+typedef struct {
+  double way[3];
+  double velocity[3];
+} Drive;
+
+// Moves the driven body b, and gives it a velocity. Runs with one work-item of index 0.
+kernel void drive_rigid_body(const int b, const Drive drive, global const Rigid* rigid,
+                             global Pose* poses, global double* speeds) {
+  if (get_global_id(0) != 0) return;
+  for (int k = 0; k < 3; ++k) {
+    poses[b].center[k] += drive.way[k];
+    poses[b].momentum[k] = rigid[b].mass * drive.velocity[k];
+  }
+  store_vector(three(drive.velocity), speeds, rigid[b].body);
 }
 
 // Ends the last step of a call.

@@ -17,9 +17,16 @@ constexpr Real kMostSolidCells = 4096;  // in addition to those in proportion to
 
 }  // namespace
 
+bool solids_move(const Model& model) {
+  return model.free_count > model.liquid_count ||
+         std::ranges::any_of(model.rigid_bodies, [](const RigidModel& rigid) {
+           return rigid.free_from == 0 || rigid.motion;
+         });
+}
+
 void SolidGeometry::set_grid(const Model& model) {
   const auto [low, high] = box_of_cells(model);
-  const Real most = kMostSolidCells + 4 * static_cast<Real>(model.particle_count);
+  const Real most = kMostSolidCells + 4 * static_cast<Real>(SolidRange(model).count);
   const Real extent = (high - low).maxCoeff();
   Real cell = std::max(model.contact_reach, extent / kMostSolidCells);
   if (cell == 0) cell = 1;  // a single particle
@@ -38,7 +45,8 @@ void SolidGeometry::set_grid(const Model& model) {
 }
 
 SolidGeometry::SolidGeometry(const Model& model, const GuardBounds& bounds) {
-  VAT_CHECK(model.liquid_count == 0 && model.particle_count > 0);
+  const SolidRange range(model);
+  VAT_CHECK(range.count > 0);
   set_grid(model);
   const Scene& scene = model.scene;
   store(scene.forces.gravity ? scene.gravity : Vec3(Vec3::Zero()), constant_.gravity);
@@ -58,8 +66,9 @@ SolidGeometry::SolidGeometry(const Model& model, const GuardBounds& bounds) {
     for (int k = 0; k < 3; ++k) constant_.speeds_of_walls[3 * wall + k] = speed[k];
   }
   constant_.walls_push = has_wall_forces(model) ? 1 : 0;
-  constant_.free = static_cast<std::int32_t>(model.free_count);
-  constant_.count = static_cast<std::int32_t>(model.particle_count);
+  constant_.free = static_cast<std::int32_t>(range.free);
+  constant_.count = static_cast<std::int32_t>(range.count);
+  constant_.first = static_cast<std::int32_t>(range.first);
   constant_.materials = static_cast<std::int32_t>(scene.materials.size());
   constant_.dimensions = scene.dimensions;
 }

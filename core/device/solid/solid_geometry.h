@@ -31,13 +31,30 @@ struct SolidParameters {
   std::int32_t cells[3];
   std::int32_t walls;       ///< bit w: wall w exists
   std::int32_t walls_push;  ///< 1: walls exert forces
-  std::int32_t free;        ///< free particles
-  std::int32_t count;       ///< all particles
+  std::int32_t free;        ///< free solid particles
+  std::int32_t count;       ///< all solid particles
   std::int32_t materials;
   std::int32_t dimensions;
+  std::int32_t first;  ///< index of the first solid particle in the model
 };
 
-/// Computes the parameters of kernels for a model of deformable and rigid bodies.
+/// The solid particles of a model, which are its last particles. The kernels of solids count from
+/// the first of them. Free particles precede those of rigid bodies.
+struct SolidRange {
+  explicit SolidRange(const Model& model)
+      : first(model.liquid_count),
+        free(model.free_count - model.liquid_count),
+        count(model.particle_count - model.liquid_count) {}
+
+  std::size_t first;  ///< index of the first solid particle in the model
+  std::size_t free;
+  std::size_t count;
+};
+
+/// Returns whether any solid can move. In a liquid, solids at rest need less memory and work.
+bool solids_move(const Model& model);
+
+/// Computes the parameters of kernels for the deformable and rigid bodies of a model.
 class SolidGeometry {
  public:
   SolidGeometry(const Model& model, const GuardBounds& bounds);

@@ -4,7 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "core/device/solid/solid_geometry.h"
 #include "core/limits.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
@@ -72,34 +74,58 @@ template <class T>
 Buffer table_of(Program& program, const SharedArray<T>& values) {
   return table_of(program, std::span<const T>(values.data(), values.size()));
 }
-/// The begins of the parts of particles in a table. In an empty table, all parts are empty.
-Buffer begins_of(Program& program, const SharedArray<Index>& begins, std::size_t particles) {
-  return begins.empty() ? table_of(program, std::vector<Index>(particles + 1, 0))
-                        : table_of(program, begins);
+/// A table of the solid particles, from one of all particles.
+template <class T>
+Buffer solids_of(Program& program, const SolidRange& range, const std::vector<T>& values) {
+  return table_of(program, std::span<const T>(values).subspan(range.first));
+}
+/// The begins of the parts of free particles in a table. In an empty table, all parts are empty.
+/// Liquid particles have no parts.
+Buffer begins_of(Program& program, const SolidRange& range, const SharedArray<Index>& begins) {
+  if (begins.empty()) return table_of(program, std::vector<Index>(range.free + 1, 0));
+  const std::span<const Index> all(begins.data(), begins.size());
+  VAT_CHECK(all[range.first] == 0);
+  return table_of(program, all.subspan(range.first));
+}
+/// A table of values that name particles: `shift` converts the indices of the model to those of
+/// solids.
+template <class T, class Shift>
+Buffer shifted_table_of(Program& program, const SharedArray<T>& values, Shift&& shift) {
+  std::vector<T> shifted(values.data(), values.data() + values.size());
+  std::ranges::for_each(shifted, shift);
+  return table_of(program, shifted);
 }
 
 }  // namespace
 
-SolidTables::SolidTables(Program& program, const Model& model, const GuardBounds& bounds)
-    : mass(table_of(program, model.mass)),
-      mobility(table_of(program, model.inverse_mass)),
-      radius(table_of(program, model.radius)),
-      body_of(table_of(program, model.body)),
-      bodies(table_of(program, bodies_of(model, bounds))),
-      laws(table_of(program, laws_of(model))),
-      exclusion_begin(begins_of(program, model.exclusion_begin, model.free_count)),
-      exclusions(table_of(program, model.exclusions)),
-      spring_begin(begins_of(program, model.spring_begin, model.free_count)),
-      springs(table_of(program, model.spring_ends)),
-      corner_begin(begins_of(program, model.cell_begin, model.free_count)),
-      corners(table_of(program, model.cell_corners)),
-      cells(table_of(program, model.cells)) {}
+SolidTables::SolidTables(Program& program, const Model& model, const GuardBounds& bounds) {
+  const SolidRange range(model);
+  const auto shift = [&](Index& particle) { particle -= static_cast<Index>(range.first); };
+  mass = solids_of(program, range, model.mass);
+  mobility = solids_of(program, range, model.inverse_mass);
+  radius = solids_of(program, range, model.radius);
+  body_of = solids_of(program, range, model.body);
+  bodies = table_of(program, bodies_of(model, bounds));
+  laws = table_of(program, laws_of(model));
+  exclusion_begin = begins_of(program, range, model.exclusion_begin);
+  exclusions = shifted_table_of(program, model.exclusions, shift);
+  spring_begin = begins_of(program, range, model.spring_begin);
+  springs = shifted_table_of(program, model.spring_ends, [&](SpringEnd& end) { shift(end.other); });
+  corner_begin = begins_of(program, range, model.cell_begin);
+  corners = table_of(program, model.cell_corners);
+  cells = shifted_table_of(program, model.cells, [&](VolumeCell& cell) {
+    // The corners of a cell in two dimensions are the first four.
+    const std::size_t count = model.scene.dimensions == 2 ? 4 : 8;
+    std::for_each_n(cell.corners.begin(), count, shift);
+  });
+}
 
 std::size_t SolidTables::bytes_for(const Model& model) {
   const std::size_t materials = model.scene.materials.size();
-  return model.particle_count * (3 * sizeof(double) + sizeof(Index)) +
+  const SolidRange range(model);
+  return range.count * (3 * sizeof(double) + sizeof(Index)) +
          model.bodies.size() * sizeof(SolidBody) + materials * (materials + 2) * sizeof(SolidLaw) +
-         3 * (model.free_count + 1) * sizeof(Index) + model.exclusions.size() * sizeof(Index) +
+         3 * (range.free + 1) * sizeof(Index) + model.exclusions.size() * sizeof(Index) +
          model.spring_ends.size() * sizeof(SpringEnd) +
          model.cell_corners.size() * sizeof(CellCorner) + model.cells.size() * sizeof(VolumeCell);
 }

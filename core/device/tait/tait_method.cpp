@@ -1,11 +1,14 @@
 #include "core/device/tait/tait_method.h"
 
+#include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "core/damping/damping_solve.h"
 #include "core/device/common/device_motion.h"
 #include "core/device/liquid/device_particles.h"
+#include "core/device/solid/device_solids.h"
 
 namespace vat {
 namespace {
@@ -23,13 +26,24 @@ struct TaitState {
   Buffer acceleration;
 };
 
+std::unique_ptr<DeviceSolids> make_solids(Program& program, const Model& model) {
+  if (!solids_move(model)) return nullptr;
+  return std::make_unique<DeviceSolids>(program, model, guard_bounds(model));
+}
+
+std::optional<MovingSolids> moving_particles(const DeviceSolids* solids) {
+  if (solids == nullptr) return {};
+  return MovingSolids{solids->position(), solids->velocity_in_forces()};
+}
+
 class TaitMethod : public DeviceMethod {
  public:
   TaitMethod(Program& program, std::shared_ptr<const Model> model, const LiquidGeometry& geometry)
       : program_(program),
         model_(std::move(model)),
         geometry_(geometry),
-        particles_(program, *model_, geometry),
+        solids_(make_solids(program, *model_)),
+        particles_(program, *model_, geometry, moving_particles(solids_.get())),
         now_(program, model_->liquid_count),
         start_(program, model_->liquid_count) {}
 
@@ -38,12 +52,21 @@ class TaitMethod : public DeviceMethod {
 
  private:
   void upload(const State& state);
-  void evaluate(const LiquidParameters& p);
+  void save();
+  void restore();
+  /// Moves the particles by `start`, and computes their forces at the time `end`.
+  void evaluate(const StepMoment& start, Real end);
+  /// Adds the forces between the liquid and moving solids to those of the solids.
+  void find_forces_on_solids(const LiquidParameters& p, Real end);
+  /// Takes a step whose kick and drift begin with `moment`.
+  void take_step(StepMoment moment, Real end, AdvanceReport& report);
+  void finish(const StepMoment& moment);
   void copy(const TaitState& from, TaitState& to);
 
   Program& program_;
   const std::shared_ptr<const Model> model_;
   const LiquidGeometry geometry_;
+  const std::unique_ptr<DeviceSolids> solids_;  ///< null if all solids are at rest
   DeviceParticles particles_;
   TaitState now_;
   TaitState start_;  ///< state before a call, for a failed step
@@ -55,6 +78,7 @@ void TaitMethod::upload(const State& state) {
   const std::size_t n = model_->liquid_count;
   now_.motion.write(state.now);
   particles_.write_solids(state.now);
+  if (solids_) solids_->write(state);
   accelerations_.assign(n, {});
   if (state.forces_current) {
     for (std::size_t i = 0; i < n; ++i) {
@@ -71,8 +95,9 @@ void TaitMethod::read(State& state) {
   accelerations_.resize(n);
   read_.read(program_, now_.motion, n);
   program_.read(now_.acceleration, std::span<Float4>(accelerations_));
+  if (solids_) solids_->read();
   read_.copy_to(state.now);
-  // No force acts on the solids, which are held.
+  // No force acts on solids that are held.
   state.forces.particle.assign(model_->particle_count, Vec3::Zero());
   state.forces.rigid_force.assign(model_->rigid_bodies.size(), Vec3::Zero());
   state.forces.rigid_torque.assign(model_->rigid_bodies.size(), Vec3::Zero());
@@ -84,6 +109,9 @@ void TaitMethod::read(State& state) {
   }
   state.forces_current = true;
   state.bound = model_->damping.any ? find_bound_of_bodies(*model_) : Oscillation{};
+  if (!solids_) return;
+  solids_->copy_to(state);
+  if (model_->damping.any) state.bound = solids_->bound();
 }
 
 void TaitMethod::copy(const TaitState& from, TaitState& to) {
@@ -91,46 +119,83 @@ void TaitMethod::copy(const TaitState& from, TaitState& to) {
   program_.copy(from.acceleration, to.acceleration, model_->liquid_count * sizeof(Float4));
 }
 
-/// Moves the particles, and computes their accelerations at the new positions.
-void TaitMethod::evaluate(const LiquidParameters& p) {
+void TaitMethod::save() {
+  copy(now_, start_);
+  if (solids_) solids_->save();
+}
+
+void TaitMethod::restore() {
+  copy(start_, now_);
+  if (solids_) solids_->restore();
+}
+
+void TaitMethod::evaluate(const StepMoment& start, Real end) {
   DeviceParticles& s = particles_;
+  StepMoment at_end = start;
+  at_end.time = end;
+  at_end.prediction = model_->damping.any ? start.opening : 0;
+  const LiquidParameters p = geometry_.at(*model_, at_end);
+  if (solids_) solids_->move(start, end, model_->scene.numerics.step, s.counters.buffer);
   s.sort_after("move", p, now_.motion.position, now_.motion.velocity, now_.acceleration);
   program_.run("find_pressure", s.count(), p, s.cells.begins, s.sorted_place, s.sorted_motion,
                s.density, s.neighbour_counts, s.neighbours);
   s.find_solid_pressure(p);
   program_.run("find_acceleration", s.count(), p, s.cells.begins, s.order, s.sorted_place,
                s.sorted_motion, s.neighbour_counts, s.neighbours, now_.acceleration);
+  if (solids_) find_forces_on_solids(p, end);
+}
+
+void TaitMethod::find_forces_on_solids(const LiquidParameters& p, Real end) {
+  DeviceParticles& s = particles_;
+  solids_->find_forces(end);
+  program_.run("add_forces_on_solids", s.count(), p, s.cells.begins, s.order, s.sorted_place,
+               s.sorted_motion, s.neighbour_counts, s.neighbours, solids_->force());
+  solids_->gather();
+}
+
+void TaitMethod::take_step(StepMoment moment, Real end, AdvanceReport& report) {
+  const bool must_solve = solids_ && solids_->must_solve(moment.drift);
+  // Forces on solids with a solve depend on the velocities before it; see evaluate_at_end().
+  moment.prediction = model_->damping.any && !must_solve ? moment.opening : 0;
+  evaluate(moment, end);
+  if (must_solve) report.iterations.damping += solids_->solve_damping(end, moment.opening);
+}
+
+void TaitMethod::finish(const StepMoment& moment) {
+  program_.run("finish", model_->liquid_count, geometry_.at(*model_, moment), now_.motion.position,
+               now_.motion.velocity, now_.acceleration, particles_.counters.buffer);
+  if (solids_) solids_->finish(moment, model_->scene.numerics.step, particles_.counters.buffer);
 }
 
 bool TaitMethod::take_steps(const EngineInput& input, std::uint32_t steps) {
   const State& state = input.state;
   const Real dt = model_->scene.numerics.step;
+  const auto time = [&](std::uint32_t s) { return static_cast<Real>(state.step_count + s) * dt; };
   if (!input.continues) upload(state);
-  copy(now_, start_);
+  save();
   particles_.counters.clear();
-  std::uint32_t evaluations = steps;
+  AdvanceReport report = input.report;
   if (!input.continues && !state.forces_current) {
-    const Real start = static_cast<Real>(state.step_count) * dt;
-    evaluate(geometry_.at(*model_, {start, 0, 0, 0, 0}));
-    ++evaluations;
+    evaluate({time(0), 0, 0, 0, 0}, time(0));
+    report.count_evaluation(model_->particle_count);
   }
-  StepMoment moment{0, 0, dt / 2, dt, model_->damping.any ? dt / 2 : 0};
+  StepMoment moment{0, 0, dt / 2, dt, 0};
   for (std::uint32_t s = 0; s < steps; ++s) {
-    moment.time = static_cast<Real>(state.step_count + s) * dt + dt;
-    evaluate(geometry_.at(*model_, moment));
+    moment.time = time(s);
+    take_step(moment, moment.time + dt, report);
+    report.count_evaluation(model_->particle_count);
     moment.closing = dt / 2;
   }
-  program_.run("finish", model_->liquid_count, geometry_.at(*model_, moment), now_.motion.position,
-               now_.motion.velocity, now_.acceleration, particles_.counters.buffer);
+  moment.time = time(steps);
+  finish(moment);
   const Counters counters = particles_.counters.read();
   if (counters.faults != 0) {
-    copy(start_, now_);
+    restore();
     return false;
   }
-  AdvanceReport& report = input.report;
-  for (std::uint32_t e = 0; e < evaluations; ++e) report.count_evaluation(model_->particle_count);
   report.count_steps(steps, dt, dt);
   report.wall_stops += static_cast<std::uint64_t>(counters.stops);
+  input.report = std::move(report);
   return true;
 }
 
@@ -138,7 +203,9 @@ bool TaitMethod::take_steps(const EngineInput& input, std::uint32_t steps) {
 
 std::size_t bytes_for_tait(const Model& model) {
   const LiquidGeometry geometry(model, guard_bounds(model));
-  return DeviceParticles::bytes_for(model, geometry) + 2 * model.liquid_count * TaitState::kBytes;
+  const bool moves = solids_move(model);
+  return DeviceParticles::bytes_for(model, geometry, moves) +
+         2 * model.liquid_count * TaitState::kBytes + (moves ? DeviceSolids::bytes_for(model) : 0);
 }
 
 std::unique_ptr<DeviceMethod> make_tait_method(Program& program,

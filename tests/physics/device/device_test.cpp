@@ -163,16 +163,6 @@ TEST(Device, RestoresTheStateBeforeAFailedStep) {
 TEST(Device, RefusesFeaturesThatItLacks) {
   const SceneCase cases[] = {
       {"/pressure_solver", [](Scene& s) { s.pressure_solver = PressureSolver::gas; }},
-      {"/bodies/1/kind",
-       [](Scene& s) {
-         s.bodies.push_back(make_body("sponge", BodyKind::deformable, "water",
-                                      make_particles({{0.25, 0.06, 0.3}}, 0.1), 0.01));
-       }},
-      {"/bodies/1/kind",
-       [](Scene& s) {
-         s.bodies.push_back(make_body("stone", BodyKind::rigid, "water",
-                                      make_particles({{0.25, 0.06, 0.3}}, 0.1), 0.01));
-       }},
       {"/bodies/1/velocity",
        [](Scene& s) {
          s.materials.push_back(make_material("stone", 2000));
@@ -184,12 +174,6 @@ TEST(Device, RefusesFeaturesThatItLacks) {
          s.materials.push_back(make_material("stone", 2000));
          s.bodies.push_back(make_fixed("stone", SphereShape{{0.25, 0.06, 0.3}, 0.02}, 0.01));
          s.bodies[1].angular_velocity = {0.1, 0, 0};
-       }},
-      {"/bodies/1/motion",
-       [](Scene& s) {
-         s.bodies.push_back(make_body("stone", BodyKind::rigid, "water",
-                                      make_particles({{0.25, 0.06, 0.3}}, 0.1), 0.01));
-         s.bodies[1].motion = SlideMotion{{1, 0, 0}, 0.1, 1};
        }},
       {"/bodies/1/material",
        [](Scene& s) {

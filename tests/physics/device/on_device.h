@@ -147,6 +147,7 @@ inline void expect_accuracy_of_cpu(const Scene& common, std::span<const SceneCas
     EXPECT_EQ(report.steps, expected.steps);
     EXPECT_EQ(report.force_evaluations, expected.force_evaluations);
     EXPECT_EQ(report.wall_stops, expected.wall_stops);
+    EXPECT_EQ(report.iterations.damping, expected.iterations.damping);
     EXPECT_LT(difference(device, exact), 3 * difference(single, exact));
     EXPECT_GT(difference(device, make_simulation(scene)), 1e-4) << "it moves";
   }

@@ -75,6 +75,13 @@ const SceneCase kScenes[] = {
        scene.bodies[0].velocity.setZero();
        scene.bodies[0].angular_velocity.setZero();
      }},
+    {"driven body with friction",
+     [](Scene& scene) {
+       scene.default_interface.friction = 0.4;
+       scene.bodies[0].velocity.setZero();
+       scene.bodies[0].angular_velocity.setZero();
+       scene.bodies[0].motion = SlideMotion{{0.8, 0.6, 0}, 0.1, 0.2};
+     }},
     {"two dimensions",
      [](Scene& scene) {
        scene.dimensions = 2;
@@ -236,10 +243,9 @@ TEST(RigidDevice, RefusesFeaturesThatItLacks) {
          s.bodies[0].velocity.setZero();
          s.bodies[0].angular_velocity = {0, 0, 1};
        }},
-      {"/bodies/0/motion",
+      {"/bodies/0/angular_velocity",
        [](Scene& s) {
          s.bodies[0].velocity.setZero();
-         s.bodies[0].angular_velocity.setZero();
          s.bodies[0].motion = SlideMotion{{1, 0, 0}, 0.1, 1};
        }},
       {"/bodies/0/velocity", [](Scene& s) { s.bodies[0].fixed = true; }},

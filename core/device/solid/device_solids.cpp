@@ -1,0 +1,179 @@
+#include "core/device/solid/device_solids.h"
+
+#include <algorithm>
+#include <span>
+
+#include "core/damping/damping_solve.h"
+#include "core/device/common/kernel_values.h"
+#include "core/model/acting_forces.h"
+#include "core/state/rigid_motion.h"
+#include "core/support/check.h"
+
+namespace vat {
+namespace {
+
+using opencl::Program;
+
+constexpr std::size_t kVector = 3 * sizeof(double);
+constexpr std::size_t kVector4 = 4 * sizeof(double);
+
+/// An Oscillation of the kernels.
+struct Bound {
+  double omega2 = 0;
+  double rate = 0;
+};
+
+std::size_t groups_of_solids(const Model& model) {
+  return static_cast<std::size_t>(groups_of(SolidRange(model).count));
+}
+
+}  // namespace
+
+DeviceSolids::DeviceSolids(Program& program, const Model& model, const GuardBounds& bounds)
+    : program_(program),
+      model_(model),
+      range_(model),
+      geometry_(model, bounds),
+      tables_(program, model, bounds),
+      least_bound_(find_bound_of_bodies(model)),
+      has_loads_(has_contact_forces(model) || has_wall_forces(model)),
+      cells_(program, range_.count, geometry_.cell_count()),
+      rigid_(program, model, bounds),
+      motion_(program, range_.count),
+      saved_motion_(program, range_.count),
+      force_(program, range_.count * kVector),
+      saved_force_(program, range_.count * kVector),
+      predicted_(program, range_.count * kVector),
+      order_(program, range_.count * sizeof(std::int32_t)),
+      sorted_position_(program, range_.count * kVector4),
+      pressure_(program, std::max<std::size_t>(1, model.cells.size()) * sizeof(double)),
+      partial_(program, groups_of_solids(model) * sizeof(Bound)),
+      bounds_of_bodies_(program,
+                        std::max<std::size_t>(1, model.rigid_bodies.size()) * sizeof(Bound)),
+      greatest_(program, sizeof(Bound)),
+      damping_(program, model) {}
+
+std::size_t DeviceSolids::bytes_for(const Model& model) {
+  const SolidGeometry geometry(model, guard_bounds(model));
+  const std::size_t n = SolidRange(model).count;
+  return SolidTables::bytes_for(model) + DeviceCells::bytes_for(n, geometry.cell_count()) +
+         n * (2 * DeviceMotion::kBytes + 3 * kVector + kVector4 + sizeof(std::int32_t)) +
+         model.cells.size() * sizeof(double) +
+         (groups_of_solids(model) + model.rigid_bodies.size() + 1) * sizeof(Bound) +
+         DeviceRigidBodies::bytes_for(model) + DeviceDamping::bytes_for(model);
+}
+
+void DeviceSolids::write(const State& state) {
+  motion_.write(state.now, range_.first);
+  bound_ = state.bound;
+  VAT_CHECK(state.forces.particle.size() == model_.particle_count);
+  program_.write(force_, std::span<const Vec3>(state.forces.particle).subspan(range_.first));
+  rigid_.write(state);
+}
+
+void DeviceSolids::read() {
+  read_forces_.resize(range_.free);
+  if (range_.free > 0) {
+    read_.read(program_, motion_, range_.free);
+    program_.read(force_, std::span<Vec3>(read_forces_));
+  }
+  rigid_.read();
+}
+
+void DeviceSolids::copy_to(State& state) const {
+  read_.copy_to(state.now, range_.first);
+  // The forces on the particles of rigid bodies are in the resultants.
+  Forces& forces = state.forces;
+  VAT_CHECK(forces.particle.size() == model_.particle_count);
+  const auto begin = forces.particle.begin() + static_cast<std::ptrdiff_t>(range_.first);
+  std::ranges::copy(read_forces_, begin);
+  std::fill(begin + static_cast<std::ptrdiff_t>(range_.free), forces.particle.end(), Vec3::Zero());
+  if (model_.has_friction) forces.friction_torque.assign(model_.particle_count, Vec3::Zero());
+  rigid_.copy_to(state);
+  for (std::size_t b = 0; b < rigid_.count(); ++b) {
+    pose_rigid_body(model_, model_.rigid_bodies[b], state.now.rigid[b], state.now);
+  }
+}
+
+void DeviceSolids::save() {
+  saved_motion_.copy_from(motion_);
+  program_.copy(force_, saved_force_, range_.count * kVector);
+  rigid_.save();
+  saved_bound_ = bound_;
+}
+
+void DeviceSolids::restore() {
+  motion_.copy_from(saved_motion_);
+  program_.copy(saved_force_, force_, range_.count * kVector);
+  rigid_.restore();
+  bound_ = saved_bound_;
+}
+
+void DeviceSolids::move(const StepMoment& start, Real end, Real step,
+                        const opencl::Buffer& counters) {
+  const SolidTables& t = tables_;
+  const SolidParameters before = geometry_.at(model_, start);
+  const SolidParameters after = geometry_.at(model_, {end, 0, 0, 0, 0});
+  rigid_.move(before, step, counters);
+  start.drift > 0 ? rigid_.drive(model_, start.time, end)
+                  : rigid_.begin_drive(model_, start.time, step);
+  rigid_.pose(after, motion_.position, predicted_, counters);
+  cells_.clear();
+  program_.run("move_solids", range_.count, before, motion_.position, motion_.velocity, predicted_,
+               force_, t.mobility, t.body_of, t.bodies, cells_.cell_of, cells_.rank, cells_.counts,
+               counters);
+  cells_.sort();
+  program_.run("collect_solids", range_.count, static_cast<std::int32_t>(range_.count),
+               cells_.cell_of, cells_.begins, cells_.unsorted, motion_.position, order_,
+               sorted_position_);
+  if (model_.cells.empty()) return;
+  program_.run(
+      "find_cell_pressure", model_.cells.size(), static_cast<std::int32_t>(model_.cells.size()),
+      static_cast<std::int32_t>(model_.scene.dimensions), motion_.position, t.cells, pressure_);
+}
+
+void DeviceSolids::find_forces(Real end) {
+  const SolidTables& t = tables_;
+  program_.run("find_solid_forces", range_.count, geometry_.at(model_, {end, 0, 0, 0, 0}),
+               cells_.begins, order_, sorted_position_, motion_.position, predicted_, rigid_.spins,
+               t.mass, t.mobility, t.radius, t.body_of, t.bodies, t.laws, t.exclusion_begin,
+               t.exclusions, t.spring_begin, t.springs, t.corner_begin, t.corners, t.cells,
+               pressure_, force_, rigid_.torque, rigid_.loads, partial_);
+}
+
+void DeviceSolids::gather() {
+  rigid_.gather(model_.has_friction, motion_.position, tables_.radius, force_, bounds_of_bodies_);
+  find_bound();
+}
+
+void DeviceSolids::find_bound() {
+  if (!model_.damping.any) return;
+  bound_ = least_bound_;
+  if (!has_loads_) return;
+  Bound bound{least_bound_.omega2, least_bound_.rate};
+  program_.run("find_bound_of_forces", Program::kGroup, groups_of(range_.count),
+               static_cast<std::int32_t>(rigid_.count()), bound, partial_, bounds_of_bodies_,
+               greatest_);
+  program_.read(greatest_, std::span(&bound, 1));
+  bound_ = {bound.omega2, bound.rate};
+}
+
+bool DeviceSolids::must_solve(Real dt) const {
+  return model_.damping.any && must_solve_damping(bound_, dt);
+}
+
+std::uint32_t DeviceSolids::solve_damping(Real end, Real dt) {
+  const PlacedSolids solids{tables_,          cells_,     order_, sorted_position_,
+                            motion_.position, predicted_, rigid_};
+  return damping_.solve(geometry_.at(model_, {end, 0, 0, 0, 0}), solids, dt, force_);
+}
+
+void DeviceSolids::finish(const StepMoment& moment, Real step, const opencl::Buffer& counters) {
+  const SolidParameters p = geometry_.at(model_, moment);
+  rigid_.finish(p, step, counters);
+  if (range_.free == 0) return;
+  program_.run("finish_solids", range_.free, p, motion_.position, motion_.velocity, force_,
+               tables_.mobility, tables_.body_of, tables_.bodies, counters);
+}
+
+}  // namespace vat

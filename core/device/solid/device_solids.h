@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/device/common/device_cells.h"
+#include "core/device/common/device_counters.h"
+#include "core/device/common/device_motion.h"
+#include "core/device/opencl/program.h"
+#include "core/device/solid/device_damping.h"
+#include "core/device/solid/device_rigid_bodies.h"
+#include "core/device/solid/solid_geometry.h"
+#include "core/device/solid/solid_tables.h"
+#include "core/model/model.h"
+#include "core/state/state.h"
+
+namespace vat {
+
+/// The deformable and rigid bodies of a model on a device: their state, and the parts of a step. A
+/// step calls move(), find_forces(), gather() and then, if must_solve() holds, solve_damping(). The
+/// functions throw opencl::DeviceFailure.
+class DeviceSolids {
+ public:
+  DeviceSolids(opencl::Program& program, const Model& model, const GuardBounds& bounds);
+
+  /// Returns the bytes of the buffers.
+  static std::size_t bytes_for(const Model& model);
+
+  /// Writes the part of a state with current forces, or before its first evaluation.
+  void write(const State& state);
+  /// Reads the state. The function copy_to() then writes it.
+  void read();
+  void copy_to(State& state) const;
+  /// Saves the present state, or returns to the saved one.
+  void save();
+  void restore();
+
+  /// Ends a step, and begins the next one with a kick and a drift from start.time to `end` [s].
+  /// Without a drift, sets the velocities of the first evaluation of a step of `step` [s].
+  void move(const StepMoment& start, Real end, Real step, const opencl::Buffer& counters);
+  /// Computes the forces at the time `end` [s] after move(), without those of a liquid.
+  void find_forces(Real end);
+  /// Sums the forces on rigid bodies, and finds the bound of oscillations.
+  void gather();
+  /// Returns whether a step of `dt` [s] must solve for the damping by the last forces.
+  bool must_solve(Real dt) const;
+  /// Solves for the damping of forces at the time `end` that act for `dt` [s]. Returns the number
+  /// of iterations.
+  std::uint32_t solve_damping(Real end, Real dt);
+  /// Ends the last step of a call at its time.
+  void finish(const StepMoment& moment, Real step, const opencl::Buffer& counters);
+
+  // Buffers in the order of particles:
+  const opencl::Buffer& position() const { return motion_.position; }
+  const opencl::Buffer& velocity_in_forces() const { return predicted_; }
+  const opencl::Buffer& force() const { return force_; }
+  /// Returns the bound of the oscillations of the last forces.
+  const Oscillation& bound() const { return bound_; }
+
+ private:
+  void find_bound();
+
+  opencl::Program& program_;
+  const Model& model_;
+  const SolidRange range_;
+  const SolidGeometry geometry_;
+  const SolidTables tables_;
+  const Oscillation least_bound_;  ///< of forces without contacts
+  const bool has_loads_;           ///< contacts can increase the bound
+  DeviceCells cells_;
+  DeviceRigidBodies rigid_;
+  DeviceMotion motion_, saved_motion_;
+  opencl::Buffer force_, saved_force_;
+  opencl::Buffer predicted_;  ///< velocities in forces
+  opencl::Buffer order_, sorted_position_;
+  opencl::Buffer pressure_;                               ///< by cell of deformable bodies
+  opencl::Buffer partial_, bounds_of_bodies_, greatest_;  ///< bounds of groups, rigid bodies, all
+  DeviceDamping damping_;
+  ReadMotion read_;
+  std::vector<Vec3> read_forces_;
+  Oscillation bound_, saved_bound_;  ///< of the last forces
+};
+
+}  // namespace vat
