@@ -20,7 +20,6 @@
 namespace vat::test::relay_test {
 namespace {
 
-using testing::ElementsAre;
 
 constexpr const char* kSession = "s1";
 const std::vector<std::string> kRelay{"--route", "relay"};
