@@ -15,5 +15,10 @@ export default defineConfig({
   },
   server: { fs: { allow: [repository] } },
   // One module cache for all files of a process: loading modules takes three quarters of the time.
-  test: { include: ['tests/web/**/*.test.ts'], isolate: false },
+  test: {
+    include: ['tests/web/**/*.test.ts'],
+    isolate: false,
+    testTimeout: 180_000, // the limits of vitest fail on a loaded machine
+    hookTimeout: 180_000,
+  },
 });

@@ -7,6 +7,6 @@ foreach(name IN LISTS names)
   string(APPEND entries
     "add_test(\"validation/${name}\" \"${PROGRAM}\" validate --quick --case \"${name}\""
     " --output \"${FOLDER}/results/${name}\")\n"
-    "set_tests_properties(\"validation/${name}\" PROPERTIES LABELS validation TIMEOUT 300)\n")
+    "set_tests_properties(\"validation/${name}\" PROPERTIES LABELS validation)\n")
 endforeach()
 file(WRITE ${FOLDER}/validation_tests.cmake "${entries}")
