@@ -20,7 +20,6 @@
 namespace vat::test::relay_test {
 namespace {
 
-
 constexpr const char* kSession = "s1";
 const std::vector<std::string> kRelay{"--route", "relay"};
 
@@ -304,8 +303,17 @@ void expect_continuation(Nodes& nodes, const std::function<void(const std::strin
   client::Client viewer(nodes.url(nodes.others(owner).front()), {}, handlers);
   client::SessionJoin::Params join;
   join.session = kSession;
-  viewer.call<client::SessionJoin>(join).get();
-  viewer.call<client::FramesSubscribe>({}).get();
+  // A node whose lease has lapsed for a moment closes the connection, and the client reconnects.
+  ASSERT_TRUE(wait_until([&] {
+    try {
+      viewer.call<client::SessionJoin>(join).get();
+      viewer.call<client::FramesSubscribe>({}).get();
+      return true;
+    } catch (const client::CallError& error) {
+      if (error.kind() != "disconnected") throw;
+      return false;
+    }
+  }));
   ASSERT_TRUE(wait_until([&] { return received.count > 0; }));
   end_owner(owner);
   ASSERT_TRUE(wait_until([&] { return resumed > 0; }));

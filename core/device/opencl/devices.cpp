@@ -1,6 +1,7 @@
 #include "core/device/opencl/devices.h"
 
 #include <algorithm>
+#include <mutex>
 
 namespace vat::opencl {
 namespace {
@@ -43,6 +44,9 @@ Result<std::vector<Device>> list_devices() {
   const Result<const Api*> loaded = load_api();
   if (!loaded) return loaded.errors();
   const Api& api = *loaded.value();
+  // PoCL 3.1 fails if two threads ask for its devices for the first time.
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
   std::vector<Device> devices;
   cl_uint count = 0;
   if (api.get_platforms(0, nullptr, &count) != CL_SUCCESS || count == 0) return devices;
