@@ -44,8 +44,8 @@ class DeviceSolids {
   void gather();
   /// Returns whether a step of `dt` [s] must solve for the damping by the last forces.
   bool must_solve(Real dt) const;
-  /// Solves for the damping of forces at the time `end` that act for `dt` [s]. Returns the number
-  /// of iterations.
+  /// Solves for the damping in a step of `dt` [s] that ends at the time `end` [s]. Returns the
+  /// number of conjugate-gradient iterations.
   std::uint32_t solve_damping(Real end, Real dt);
   /// Ends the last step of a call at its time.
   void finish(const StepMoment& moment, Real step, const opencl::Buffer& counters);
