@@ -64,6 +64,26 @@ export async function differenceFromReference(viewer: Viewer, name: string): Pro
   return now.data.reduce((all, value, i) => all + Math.abs(value - data[i]!), 0) / data.length;
 }
 
+/** Describes the canvas in a failed test: its data attributes, and a small picture as a data URL. */
+export async function sketchOf(viewer: Viewer): Promise<string> {
+  const page = await viewer.blankPage();
+  const sketch = await page.evaluate(readSketch, [await viewer.picture(), kWidth] as const);
+  const state = await viewer.page.locator('#view').evaluate((view) => ({ ...view.dataset }));
+  return `${JSON.stringify(state)}\n${sketch}`;
+}
+
+/** Runs in the browser. */
+async function readSketch([address, width]: readonly [string, number]): Promise<string> {
+  const image = new Image();
+  image.src = address;
+  await image.decode();
+  const canvas = document.createElement('canvas');
+  canvas.width = width;
+  canvas.height = Math.round((image.height * width) / image.width);
+  canvas.getContext('2d')!.drawImage(image, 0, 0, canvas.width, canvas.height);
+  return canvas.toDataURL('image/jpeg', 0.7);
+}
+
 /** Runs in the browser. */
 async function readPixels([address, width]: readonly [string, number]): Promise<Pixels> {
   const image = new Image();

@@ -2,6 +2,7 @@ import { afterAll, afterEach, beforeAll, expect } from 'vitest';
 import type { Scene } from '../../../web/client/index';
 import { Observer } from './observer';
 import type { Host } from './server';
+import { sketchOf } from './pixels';
 import { openPage, sharedServer } from './shared';
 import type { Look, Viewer } from './viewer';
 
@@ -49,6 +50,8 @@ export class Visits {
     afterEach(async ({ task }) => {
       const problems = this.page?.problems.splice(0) ?? [];
       const isGone = this.page && new URL(this.page.page.url()).search !== '';
+      if (this.page && task.result?.state === 'fail')
+        process.stderr.write(`${await sketchOf(this.page)}\n`);
       if (task.result?.state === 'fail' || problems.length > 0 || isGone) await this.leave();
       expect(problems).toEqual([]);
     });
