@@ -10,7 +10,6 @@
 #include <thread>
 #include <utility>
 
-#include "core/support/check.h"
 #include "server/access/token.h"
 #include "server/support/log.h"
 
@@ -226,7 +225,8 @@ void ClusterNode::wait_for_tick() {
 
 void ClusterNode::tick() {
   const auto now = clock_.now();
-  if (now - last_renewal_ >= renewal_.load()) renew(now);
+  // The interval of a large cluster leaves no time for a second failure.
+  if (!is_renewed_ || now - last_renewal_ >= renewal_.load()) renew(now);
   if (needs_refresh_.exchange(false) || now - last_refresh_ >= kRefresh) {
     last_refresh_ = now;
     post([this] { refresh(); });
@@ -260,21 +260,24 @@ void ClusterNode::renew(Time now) {
   if (!has_name_ || renewing_.exchange(true)) return;
   const auto finish = [this, now](const Stream::Appended& result) {
     if (const auto* error = std::get_if<NatsError>(&result)) {
-      if (error->kind() != NatsError::Kind::conflict) {
-        renewing_ = false;
-        return;
-      }
-      return post([this] {
+      if (error->kind() != NatsError::Kind::conflict) return note_failed_renewal(*error);
+      return post([this, error = *error] {
         check_name();
-        renewing_ = false;
+        note_failed_renewal(error);
       });
     }
     name_revision_ = std::get<std::uint64_t>(result);
+    is_renewed_ = true;
     renewing_ = false;
     if (lease_.confirm(now)) return;
     if (!checking_.exchange(true)) post([this, now] { check_sessions(now); });
   };
   node_bucket_.put(name(), write_node(describe()), name_revision_, finish);
+}
+
+void ClusterNode::note_failed_renewal(const NatsError& error) {
+  renewing_ = false;
+  if (is_renewed_.exchange(false)) log_warning("the lease is not renewed: {}", error.what());
 }
 
 std::shared_ptr<SessionReplica> ClusterNode::replica_of(std::uint64_t session) {

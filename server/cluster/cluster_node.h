@@ -22,9 +22,9 @@
 #include "server/cluster/lease.h"
 #include "server/cluster/node_table.h"
 #include "server/cluster/session_locator.h"
-#include "server/cluster/session_reader.h"
 #include "server/cluster/session_stream.h"
 #include "server/history/session_replica.h"
+#include "server/storage/storage.h"
 
 namespace vat {
 
@@ -134,6 +134,7 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   void wait_for_tick();
   void tick();
   void renew(Time now);
+  void note_failed_renewal(const NatsError& error);
   void look_at_change(std::uint64_t session);
   /// Looks at the sessions of this node, released ones, and those of silent nodes.
   void look_at_sessions(Time now);
@@ -188,6 +189,7 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   std::atomic<bool> checking_ = false;
   std::atomic<bool> needs_refresh_ = false;
   std::atomic<bool> renewing_ = false;
+  std::atomic<bool> is_renewed_ = true;           // false: the last renewal failed
   std::atomic<bool> has_name_ = true;             // false: another process has the node's name
   std::atomic<std::uint64_t> name_revision_ = 0;  // of the node's entry
   std::atomic<double> load_ = 0;                  // used cores
