@@ -2,7 +2,6 @@
 
 #include "core/evaluation/force_model.h"
 #include "core/guard/guard.h"
-#include "core/laws/vat_motion.h"
 #include "core/state/state.h"
 #include "core/support/parallel.h"
 

@@ -1,4 +1,5 @@
 #include "core/numerics/cost_estimate.h"
+#include "core/laws/surface_tension.h"
 #include "core/scene/lookup.h"
 #include "core/support/check.h"
 

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "core/scene/scene.h"
-#include "core/support/result.h"
 
 namespace vat {
 

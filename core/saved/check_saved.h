@@ -6,7 +6,7 @@
 #include "core/model/model.h"
 #include "core/numerics/stable_step.h"
 #include "core/sampling/sampling.h"
-#include "core/saved/archive.h"
+#include "core/scene/scene.h"
 #include "core/state/controls.h"
 #include "core/state/state.h"
 #include "core/support/result.h"

@@ -3,7 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/scene/scene.h"
+#include "core/scene/interface.h"
+#include "core/scene/material.h"
 #include "core/support/check.h"
 
 namespace vat {

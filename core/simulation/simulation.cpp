@@ -8,6 +8,7 @@
 #include "core/numerics/choose_numerics.h"
 #include "core/simulation/measure.h"
 #include "core/simulation/simulation_impl.h"
+#include "core/sleep/islands.h"
 #include "core/state/rigid_motion.h"
 #include "core/stepping/local_levels.h"
 #include "core/stepping/step_plan.h"

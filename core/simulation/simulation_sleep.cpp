@@ -6,6 +6,7 @@
 
 #include "core/simulation/simulation_impl.h"
 #include "core/sleep/drives.h"
+#include "core/sleep/islands.h"
 #include "core/state/body_state.h"
 #include "core/support/check.h"
 

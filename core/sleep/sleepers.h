@@ -3,7 +3,6 @@
 #include <memory>
 #include <vector>
 
-#include "core/sleep/islands.h"
 #include "core/sleep/resting_bodies.h"
 #include "core/state/state.h"
 

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "core/stepping/local_levels.h"
+#include "core/guard/guard.h"
+#include "core/stepping/control/step_control.h"
 #include "core/stepping/local_pairs.h"
 
 namespace vat {

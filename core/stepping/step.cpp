@@ -1,5 +1,4 @@
 #include "core/rigid/guided_bodies.h"
-#include "core/solid/spring_changes.h"
 #include "core/stepping/step_parts.h"
 #include "core/stepping/stepper.h"
 

@@ -7,7 +7,6 @@
 #include "core/guard/enforce_walls.h"
 #include "core/limits.h"
 #include "core/liquid/pairs/scratch.h"
-#include "core/numerics/error_model.h"
 #include "core/solid/spring_changes.h"
 #include "core/state/kick_drift.h"
 #include "core/support/check.h"

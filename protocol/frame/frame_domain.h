@@ -2,9 +2,9 @@
 
 #include <optional>
 
-#include "core/scene/scene.h"
+#include "core/scene/world.h"
 #include "core/simulation/simulation.h"
-#include "protocol/frame/frame_codec.h"
+#include "core/types.h"
 
 namespace vat {
 

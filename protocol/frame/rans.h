@@ -6,8 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "core/support/check.h"
-
 /// Entropy coder of FRAMES.md. Three range asymmetric numeral systems (rANS; J. Duda,
 /// arXiv:1311.2540) are interleaved. Frequencies have 12 bits, and words have 16 bits.
 namespace vat::rans {

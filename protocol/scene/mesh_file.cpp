@@ -8,7 +8,6 @@
 #include <numeric>
 
 #include "core/limits.h"
-#include "core/support/check.h"
 #include "protocol/scene/mesh_parts.h"
 #include "protocol/scene/obj_mesh.h"
 

@@ -3,8 +3,9 @@
 #include <functional>
 #include <string>
 
-#include "core/scene/scene.h"
+#include "core/scene/body.h"
 #include "core/support/result.h"
+#include "core/types.h"
 
 namespace vat {
 

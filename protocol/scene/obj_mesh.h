@@ -2,8 +2,9 @@
 
 #include <string>
 
-#include "core/scene/scene.h"
+#include "core/scene/body.h"
 #include "core/support/result.h"
+#include "core/types.h"
 
 namespace vat {
 

@@ -15,6 +15,7 @@
 #include "server/cli/common/data_folders.h"
 #include "server/cli/replay_seeks.h"
 #include "server/operations/log_format.h"
+#include "server/replay/log_replay.h"
 #include "server/replay/replay_player.h"
 #include "server/rpc/method_table.h"
 

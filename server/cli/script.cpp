@@ -12,8 +12,8 @@
 #include "server/cli/common/data_folders.h"
 #include "server/cli/common/option_checks.h"
 #include "server/cli/common/scene_argument.h"
+#include "server/script/pattern.h"
 #include "server/script/play_file.h"
-#include "server/script/player.h"
 
 namespace vat {
 

@@ -7,6 +7,7 @@
 
 #include "core/support/check.h"
 #include "server/cluster/cluster_node.h"
+#include "server/cluster/session_reader.h"
 #include "server/support/log.h"
 
 namespace vat {

@@ -4,6 +4,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/saved/archive.h"
 #include "core/saved/sealed_bytes.h"
 #include "protocol/recording/recording_index.h"
 #include "server/storage/sqlite/compression.h"

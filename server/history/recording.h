@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/saved/archive.h"
 #include "core/support/instruction_set.h"
 #include "core/support/result.h"
 #include "server/storage/log_entry.h"

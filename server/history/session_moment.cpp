@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "core/limits.h"
-#include "protocol/messages/describe.h"
 
 namespace vat {
 namespace {

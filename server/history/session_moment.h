@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-#include "core/simulation/simulation.h"
+#include "core/simulation/snapshot.h"
 #include "protocol/json/json_reader.h"
 #include "server/people/participants.h"
 #include "server/people/session_settings.h"

@@ -1,7 +1,6 @@
 // scene.load, control.*
 
 #include "server/methods/handlers.h"
-#include "server/methods/parts.h"
 #include "server/session/core/scene_loading.h"
 
 namespace vat {

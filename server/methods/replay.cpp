@@ -3,7 +3,6 @@
 #include "core/limits.h"
 #include "server/methods/handlers.h"
 #include "server/methods/parts.h"
-#include "server/replay/replay_run.h"
 #include "server/support/base64.h"
 
 namespace vat {

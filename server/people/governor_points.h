@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "protocol/scene/numerics_change.h"
+#include "core/simulation/numerics_change.h"
 
 namespace vat {
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "protocol/messages/describe.h"
 #include "server/messages/limits.h"
 
 namespace vat {

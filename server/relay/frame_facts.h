@@ -2,7 +2,7 @@
 
 #include <optional>
 
-#include "core/scene/scene.h"
+#include "core/scene/world.h"
 #include "protocol/json/json_reader.h"
 
 namespace vat {

@@ -10,7 +10,6 @@
 
 #include "protocol/frame/frame_codec.h"
 #include "server/frames/frame_feed.h"
-#include "server/relay/frame_facts.h"
 #include "server/relay/relay_message.h"
 
 namespace vat {

@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "core/support/check.h"
 #include "server/relay/relay_door.h"
 #include "server/support/log.h"
 

@@ -7,7 +7,6 @@
 
 #include "core/support/check.h"
 #include "server/access/role.h"
-#include "server/support/log.h"
 
 namespace vat {
 namespace {

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "server/history/recording.h"
-#include "server/replay/log_replay.h"
 #include "server/replay/moment_cache.h"
 #include "server/session/core/session_core.h"
 

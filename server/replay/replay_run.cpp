@@ -6,7 +6,6 @@
 
 #include "core/support/check.h"
 #include "protocol/json/printable.h"
-#include "protocol/messages/describe.h"
 #include "server/people/person_name.h"
 #include "server/replay/foreign_text.h"
 #include "server/session/core/saved_state.h"

@@ -6,6 +6,7 @@
 #include "core/support/check.h"
 #include "core/support/nearest_name.h"
 #include "server/methods/parts.h"
+#include "server/rpc/method_table.h"
 #include "server/support/log.h"
 
 namespace vat {

@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "server/directory/session_directory.h"
-#include "server/rpc/method_table.h"
+#include "server/messages/method_row.h"
 
 namespace vat {
 

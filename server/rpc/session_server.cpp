@@ -6,6 +6,7 @@
 
 #include "server/relay/relay_host.h"
 #include "server/rpc/dispatcher.h"
+#include "server/rpc/method_table.h"
 #include "server/support/log.h"
 
 namespace vat {

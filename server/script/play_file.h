@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "protocol/client/connection/websocket_url.h"
-#include "server/script/pattern.h"
 
 namespace vat::script {
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/support/check.h"
+#include "protocol/scene/numerics_change.h"
 #include "server/support/log.h"
 
 namespace vat {

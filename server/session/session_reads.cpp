@@ -5,7 +5,6 @@
 #include <exception>
 #include <utility>
 
-#include "core/support/check.h"
 #include "server/session/core/session_run.h"
 #include "server/session/core/session_view.h"
 #include "server/support/log.h"

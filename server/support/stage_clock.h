@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/simulation/simulation.h"
+#include "core/stage/observer.h"
 
 namespace vat {
 

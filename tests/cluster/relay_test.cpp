@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "protocol/client/client.h"
+#include "server/relay/frame_facts.h"
 #include "server/relay/frame_state.h"
 #include "server/relay/relay_feed.h"
 #include "server/relay/relay_message.h"

@@ -3,6 +3,9 @@
 
 #include <cmath>
 
+#include "core/guard/guard.h"
+#include "core/stepping/control/step_control.h"
+#include "core/stepping/local_levels.h"
 #include "core/stepping/local_step.h"
 #include "core/stepping/step_plan.h"
 #include "tests/support/mixed_scenes.h"

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/support/check.h"
-
 namespace vat {
 
 void Complementarity::resize(std::size_t count) {

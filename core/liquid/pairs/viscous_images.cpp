@@ -4,7 +4,6 @@
 
 #include "core/liquid/pairs/coupled_pairs.h"
 #include "core/liquid/pairs/liquid_pairs.h"
-#include "core/support/check.h"
 
 namespace vat {
 namespace {

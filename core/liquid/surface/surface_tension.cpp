@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "core/laws/surface_tension.h"
 #include "core/liquid/pairs/coupled_pairs.h"
 #include "core/liquid/pairs/liquid_pairs.h"
 #include "core/liquid/surface/scratch.h"

@@ -1,7 +1,5 @@
 #pragma once
 
-#include "core/laws/surface_tension.h"
-
 namespace vat {
 
 struct StepContext;

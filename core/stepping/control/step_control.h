@@ -4,7 +4,6 @@
 
 #include "core/evaluation/force_model.h"
 #include "core/guard/guard.h"
-#include "core/numerics/stable_step.h"
 #include "core/stepping/control/step_control_contacts.h"
 
 /// Functions that compute the step lengths that a state allows, and divide nominal steps into

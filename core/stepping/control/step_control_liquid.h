@@ -1,7 +1,5 @@
 #pragma once
 
-#include "core/stepping/control/step_control_contacts.h"
-
 /// The step lengths that the motion of liquids allows; see find_present_steps().
 namespace vat {
 

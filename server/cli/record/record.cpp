@@ -13,7 +13,6 @@
 #include "core/limits.h"
 #include "core/numerics/choose_numerics.h"
 #include "core/threads/thread_pool.h"
-#include "core/validation/validate.h"
 #include "protocol/scene/scene_json.h"
 #include "server/cli/common/command.h"
 #include "server/cli/common/commands.h"

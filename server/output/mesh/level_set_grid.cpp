@@ -4,8 +4,6 @@
 #include <cmath>
 #include <map>
 
-#include "core/support/check.h"
-
 namespace vat {
 
 namespace {

@@ -4,7 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "core/simulation/simulation.h"
+#include "core/stage/advance_report.h"
+#include "core/stage/observer.h"
 #include "server/operations/server_metrics.h"
 #include "server/support/stage_clock.h"
 

@@ -8,7 +8,6 @@
 #include <string_view>
 
 #include "server/storage/sqlite/durability.h"
-#include "server/storage/sqlite/storage_error.h"
 
 struct sqlite3;
 struct sqlite3_stmt;

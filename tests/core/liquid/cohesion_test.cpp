@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/kernels/lattice_sum.h"
+#include "core/laws/surface_tension.h"
 #include "tests/core/kernels/quadrature.h"
 #include "tests/support/force_probe.h"
 #include "tests/support/scenes.h"

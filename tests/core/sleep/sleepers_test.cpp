@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/laws/vat_motion.h"
+#include "core/sleep/islands.h"
 #include "core/sleep/resting_bodies.h"
 #include "core/state/body_state.h"
 #include "tests/core/support/resting_scenes.h"

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "server/replay/log_replay.h"
 #include "tests/server/replay/replay_fixture.h"
 
 namespace vat::test::replay_test {
