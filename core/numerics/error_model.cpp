@@ -28,4 +28,10 @@ Real resolving_phase_of_places(const Numerics& numerics) {
                          numerics.tolerance);
 }
 
+bool estimates_errors(const Numerics& numerics) {
+  return numerics.control == StepControl::adaptive &&
+         numerics.integrator != IntegratorId::explicit_euler &&
+         numerics.integrator != IntegratorId::symplectic_euler;
+}
+
 }  // namespace vat

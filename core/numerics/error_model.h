@@ -21,4 +21,9 @@ Real resolving_phase(IntegratorId integrator, Real error);
 /// the beginning and end of a contact.
 Real resolving_phase_of_places(const Numerics& numerics);
 
+/// Returns whether step control estimates the error of a step. Otherwise, the tolerance has an
+/// effect on contacts only: local control keeps the rest stable, and an integrator with one
+/// evaluation for each step has nothing to compare.
+bool estimates_errors(const Numerics& numerics);
+
 }  // namespace vat

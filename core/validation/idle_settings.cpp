@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/laws/vat_motion.h"
+#include "core/numerics/error_model.h"
 #include "core/sampling/volumes.h"
 #include "core/scene/interface_table.h"
 #include "core/scene/lookup.h"
@@ -127,8 +128,7 @@ void warn_of_tolerance(const Numerics& numerics, std::vector<Warning>& warnings)
   } else if (numerics.control == StepControl::local) {
     warnings.push_back({"no_effect", "/numerics/tolerance",
                         "has an effect on contacts only: local control keeps the rest stable"});
-  } else if (numerics.integrator == IntegratorId::explicit_euler ||
-             numerics.integrator == IntegratorId::symplectic_euler) {
+  } else if (!estimates_errors(numerics)) {
     warnings.push_back({"no_effect", "/numerics/tolerance",
                         "has an effect on contacts only: with one evaluation a step, " +
                             std::string(to_string(numerics.integrator)) +

@@ -7,6 +7,7 @@
 
 #include "core/limits.h"
 #include "core/numerics/choose_numerics.h"
+#include "core/numerics/error_model.h"
 #include "core/numerics/step_limits.h"
 #include "core/validation/validate.h"
 
@@ -27,6 +28,11 @@ constexpr std::array<std::array<Real, 2>, 4> kVolumeTolerances{
     {{5e-4, 1e-5}, {1e-3, 1e-4}, {3e-3, 1e-3}, {1e-2, 1e-2}}};
 constexpr Real kRungeKuttaStages = 4;
 constexpr Real kSolvedStep = 4;  // cost of an incompressible step; 2 to 11 (core/ACCURACY.md)
+
+bool has_solid_in(const Scene& scene) {
+  return std::ranges::any_of(
+      scene.bodies, [](const BodyDescription& body) { return body.kind != BodyKind::liquid; });
+}
 
 bool has_liquid_in(const Scene& scene) {
   return std::ranges::any_of(scene.bodies, [](const BodyDescription& body) {
@@ -96,9 +102,15 @@ class Method {
   Real longest_ = 0;
 };
 
-bool are_equal(const Candidate& a, const Candidate& b) {
+/// `has_contacts`: whether solids can have contacts, whose steps depend on the tolerance.
+bool uses_tolerance(const Numerics& numerics, bool has_contacts) {
+  const bool is_fixed = numerics.control == StepControl::fixed;
+  return !is_fixed && (has_contacts || estimates_errors(numerics));
+}
+
+bool are_equal(const Candidate& a, const Candidate& b, bool has_contacts) {
   const bool same_tolerance =
-      a.numerics.control == StepControl::fixed || a.numerics.tolerance == b.numerics.tolerance;
+      !uses_tolerance(a.numerics, has_contacts) || a.numerics.tolerance == b.numerics.tolerance;
   const bool same_solve =
       a.pressure_solver != PressureSolver::incompressible ||
       (a.incompressible.density_tolerance == b.incompressible.density_tolerance &&
@@ -129,14 +141,14 @@ std::vector<Scene> solver_variants(const Scene& scene, bool has_liquid) {
   return all;
 }
 
-/// Returns the numerics of the references, from the scene's own method: velocity Verlet if the
-/// scene supports it, and otherwise the scene's integrator.
 /// Returns the step of the scene if it is fixed, and otherwise 0: the longest step of variable
 /// control is no stable fixed step.
 Real trusted_step_of(const Scene& scene) {
   return scene.numerics.control == StepControl::fixed ? scene.numerics.step : 0;
 }
 
+/// Sets the numerics of the references, from the scene's own method: velocity Verlet if the
+/// scene supports it, and otherwise the scene's integrator.
 void set_references(const Scene& own, const std::vector<SampledBody>& samples, CandidateSet& set) {
   Scene tight = own;
   tight.incompressible.density_tolerance =
@@ -228,12 +240,17 @@ CandidateSet find_candidates(const Scene& scene) {
       Method(variant, integrator, samples, trusted_step).append_all(all);
     }
   }
+  const bool has_contacts = has_solid_in(scene);
   for (const Candidate& candidate : all) {
-    const auto is_same = [&](const Candidate& other) { return are_equal(other, candidate); };
+    const auto is_same = [&](const Candidate& other) {
+      return are_equal(other, candidate, has_contacts);
+    };
     if (std::ranges::none_of(set.candidates, is_same)) set.candidates.push_back(candidate);
   }
   std::ranges::stable_sort(set.candidates, {}, expected_work);
-  const auto is_own = [&](const Candidate& candidate) { return are_equal(candidate, own); };
+  const auto is_own = [&](const Candidate& candidate) {
+    return are_equal(candidate, own, has_contacts);
+  };
   set.own = static_cast<std::size_t>(std::ranges::find_if(set.candidates, is_own) -
                                      set.candidates.begin());
   return set;

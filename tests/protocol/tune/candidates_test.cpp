@@ -1,7 +1,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <set>
+#include <utility>
 
 #include "core/numerics/choose_numerics.h"
 #include "core/validation/validate.h"
@@ -82,6 +84,25 @@ TEST(Candidates, MethodsThatTheSceneDoesNotSupportAreAbsent) {
     EXPECT_NE(candidate.numerics.control, StepControl::local);
   }
   EXPECT_EQ(integrators_of(find_candidates(catalogue_scene("rigid-stack"))).size(), 3u);
+}
+
+// Without solids, only adaptive velocity Verlet and Runge-Kutta 4 depend on the tolerance.
+TEST(Candidates, AToleranceWithoutEffectMakesNoSecondCandidate) {
+  const CandidateSet set = find_candidates(catalogue_scene("dam-break"));
+  std::map<std::string, std::set<Real>> tolerances;
+  for (Candidate candidate : set.candidates) {
+    if (candidate.numerics.control == StepControl::fixed) continue;
+    const Real tolerance = std::exchange(candidate.numerics.tolerance, 1);
+    tolerances[describe(candidate, true)].insert(tolerance);
+  }
+  std::set<std::size_t> counts;
+  for (const auto& [numerics, values] : tolerances) {
+    const bool is_estimated = numerics.find("adaptive") != std::string::npos &&
+                              numerics.find("symplectic") == std::string::npos;
+    EXPECT_EQ(values.size(), is_estimated ? 4 : 1) << numerics;
+    counts.insert(values.size());
+  }
+  EXPECT_EQ(counts, (std::set<std::size_t>{1, 4}));
 }
 
 // The drop is unstable with fixed steps of 4 ms.
