@@ -71,7 +71,7 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   /// Returns the instruction set that all present nodes have, at most `greatest`.
   InstructionSet common_instructions(InstructionSet greatest) const;
   /// Adds a new session with its first log entry, owned by this node. Returns its number. Waits.
-  /// Throws NatsError; its kind is `conflict` if the name is in use.
+  /// Throws NameInUse or another NatsError.
   std::uint64_t add_session(const std::string& name, const std::string& instruction_set,
                             const std::string& settings, const LogEntry& first);
   /// Removes a session of this node from the cluster, and then calls `done`.

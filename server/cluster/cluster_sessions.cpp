@@ -104,15 +104,14 @@ LocatedSession ClusterNode::update(
       const auto found = hosted_.find(session);
       if (found != hosted_.end()) found->second.entry = changed;
       return changed;
+    } catch (const NameInUse&) {
+      throw;
     } catch (const NatsError& error) {
       if (error.kind() != NatsError::Kind::conflict || attempt == kUpdateAttempts) throw;
     }
     const auto current = locator_.read(session);
     if (!current || current->owner != name() || current->epoch != hosted->entry.epoch) {
       throw NatsError(NatsError::Kind::conflict, "the session has another owner");
-    }
-    if (current->revision == hosted->entry.revision) {
-      throw NatsError(NatsError::Kind::conflict, "the name is in use");
     }
     const std::lock_guard lock(mutex_);
     const auto found = hosted_.find(session);

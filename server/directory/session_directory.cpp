@@ -133,8 +133,9 @@ std::variant<SessionId, RpcError> SessionDirectory::create(std::string name, con
   } catch (const StorageError& error) {
     log_error("a session cannot be stored: {}", error.what());
     return storage_failed(error.kind());
+  } catch (const NameInUse&) {
+    return name_in_use();
   } catch (const NatsError& error) {
-    if (error.kind() == NatsError::Kind::conflict) return name_in_use();
     log_error("a session cannot be stored: {}", error.what());
     return storage_failed(StorageError::Kind::unreachable);
   }
