@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 
 #include "server/storage/session_store.h"
@@ -24,6 +25,8 @@ class ClusterHost {
   /// Creates a session at the request of another node. Calls `answer` with a JSON text.
   virtual void create_for(const std::string& request,
                           std::function<void(const std::string&)> answer) = 0;
+  /// Returns the numbers and names of the replays, which stay on their node.
+  virtual std::map<std::uint64_t, std::string> replays() const { return {}; }
   /// Called often, and after each change of the cluster's sessions.
   virtual void cluster_changed() = 0;
 };

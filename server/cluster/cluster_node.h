@@ -80,7 +80,14 @@ class ClusterNode final : public SessionReplicas, public SendGate {
 
   /// Returns the sessions of the cluster.
   std::vector<LocatedSession> sessions() const { return locator_.all(); }
-  std::optional<LocatedSession> find(std::uint64_t session) const { return locator_.find(session); }
+  /// Returns the replays of the other nodes.
+  std::vector<LocatedSession> replays() const;
+  /// Returns a session of the cluster, or a replay of another node.
+  std::optional<LocatedSession> find(std::uint64_t session) const;
+  /// Returns a number that no other session of the cluster has. Waits. Throws NatsError.
+  std::uint64_t new_number() { return locator_.next_number(); }
+  /// Returns the time within which each present node renews its entry.
+  std::chrono::milliseconds entry_age() const { return renewal_.load() * 3 / 2; }
   /// Returns the URL of the session's owner, or nothing if it is unknown or silent.
   std::optional<std::string> url_of(const LocatedSession& session) const;
   /// Returns the tokens that all nodes share, or null if the settings have no key.
