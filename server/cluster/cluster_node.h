@@ -155,6 +155,9 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   void take(std::uint64_t session);
   bool is_silent(const std::string& node);
   void lose(std::uint64_t session);
+  /// Ends a session that the node does not host any more, and then permits that the node takes it
+  /// again.
+  void end_lost(std::uint64_t session, const std::string& url);
   /// Returns false if the session is not hosted.
   bool forget(std::uint64_t session);
   void release(std::uint64_t session, const std::string& successor);
@@ -167,8 +170,9 @@ class ClusterNode final : public SessionReplicas, public SendGate {
                         const std::function<LocatedSession(const LocatedSession&)>& change);
 
   std::shared_ptr<SessionStream> make_stream(SessionStream::Place place);
-  /// Prevents that the node takes or loses the session, or permits it again.
-  void reserve(std::uint64_t session, bool is_reserved);
+  /// Prevents that the node takes or loses the session, until as many calls of unreserve().
+  void reserve(std::uint64_t session);
+  void unreserve(std::uint64_t session);
   std::optional<Hosted> find_hosted(std::uint64_t session) const;
   void post(std::function<void()> task);
   void measure_load(Time now);
@@ -204,7 +208,8 @@ class ClusterNode final : public SessionReplicas, public SendGate {
 
   mutable std::mutex mutex_;  // guards the members below
   std::map<std::uint64_t, Hosted> hosted_;
-  std::set<std::uint64_t> reserved_;  // sessions that are being created, taken or moved
+  // Sessions that are being created, taken, moved or ended.
+  std::multiset<std::uint64_t> reserved_;
   std::map<std::uint64_t, Move> moves_;
   std::map<std::uint64_t, Time> failed_;  // times at which a take-over failed
   std::map<std::uint64_t, Time> orphans_;

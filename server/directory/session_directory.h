@@ -136,9 +136,9 @@ class SessionDirectory : private ClusterHost {
   void remove_stored(SessionNumber number);
   InstructionSet instructions_for_new() const;
 
-  // Implemented in session_directory_cluster.cpp.
+  // Implemented in session_directory_cluster.cpp and session_directory_relay.cpp.
   void start_taken(const StoredSession& session) override;
-  void end_lost(std::uint64_t session, const std::string& url) override;
+  void end_lost(std::uint64_t session, const std::string& url, std::function<void()> done) override;
   bool stop_for_move(std::uint64_t session, std::function<void()> done) override;
   void create_for(const std::string& request,
                   std::function<void(const std::string&)> answer) override;

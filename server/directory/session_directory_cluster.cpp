@@ -51,11 +51,12 @@ void SessionDirectory::tell_moved(SessionNumber number, const std::string& url) 
   tables_.clients.close_session(number, moved, moved);
 }
 
-void SessionDirectory::end_lost(std::uint64_t session, const std::string& url) {
+void SessionDirectory::end_lost(std::uint64_t session, const std::string& url,
+                                std::function<void()> done) {
   std::vector<AbsentSession::Waiting> waiting;
   {
     const std::lock_guard lock(tables_.mutex);
-    if (admission_.stopped()) return;
+    if (admission_.stopped()) return done();
     tell_moved(session, url);
     if (tables_.sessions.running().contains(session)) {
       tables_.sessions.at(session).close(Session::End::moved, {});
@@ -69,7 +70,10 @@ void SessionDirectory::end_lost(std::uint64_t session, const std::string& url) {
   for (AbsentSession::Waiting& one : waiting) one.reply.answer(moved_to(to_id(session), url));
   resources_.storage->journal().post(
       [&storage = *resources_.storage, session] { storage.sessions().close(session); },
-      [&storage = *resources_.storage](auto) { storage.remove_closed(); });
+      [&storage = *resources_.storage, done = std::move(done)](auto) {
+        storage.remove_closed();
+        done();
+      });
   log_info("session {} is on another node: {}", to_id(session), url);
 }
 
