@@ -230,6 +230,7 @@ void SessionDirectory::add_elsewhere(const Client& client, std::vector<Listed>& 
     if (is_here || admission_.refuse_access(client, one.number)) continue;
     SessionSummary summary;
     summary.name = one.name;
+    summary.is_replay = one.number >= kFirstReplay;
     list.push_back({to_id(one.number), std::move(summary), "elsewhere", false, one.owner});
   }
 }

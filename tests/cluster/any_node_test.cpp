@@ -77,6 +77,7 @@ TEST_F(AnyNode, RelaysRequestsThatNameASession) {
   const Json listed = find_in_list(other, replay);
   EXPECT_EQ(listed.at("name"), "the past");
   EXPECT_EQ(listed.at("node"), owner);
+  EXPECT_EQ(listed.at("kind"), "replay");
   EXPECT_EQ(other.result("session.close", {{"session", replay}}).count("tick"), 1U);
   EXPECT_EQ(admin.wait("session.closed").at("params").at("session"), replay);
   EXPECT_EQ(other.call("session.join", {{"session", replay}}).at("error").at("data").at("kind"),
