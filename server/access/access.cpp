@@ -52,12 +52,8 @@ void AccessTokens::share(SharedTokens& shared, TokenSigner signer) {
   signer_.emplace(std::move(signer));
 }
 
-bool AccessTokens::shares(const std::string& session) const {
-  return shared_ != nullptr && !session.starts_with('r');
-}
-
 std::string AccessTokens::make_resume(const std::string& session) const {
-  if (!shares(session)) return make_token();
+  if (shared_ == nullptr) return make_token();
   return signer_->sign({TokenClaims::Kind::resume, Role::viewer, session, 0});
 }
 
@@ -101,7 +97,7 @@ void AccessTokens::issue(Grant grant, std::optional<std::size_t> uses, std::chro
   const double ends = clock_.wall_time() + Seconds(time).count();
   const TokenClaims claims{TokenClaims::Kind::grant, grant.role, grant.session,
                            static_cast<std::uint64_t>(std::ceil(ends))};
-  const bool is_shared = shares(grant.session);
+  const bool is_shared = shared_ != nullptr;
   const std::string token = is_shared ? signer_->sign(claims) : make_token();
   const TokenHash hash = hash_of_token(token);
   if (!insert(hash, ValidToken{grant, uses, clock_.now() + time})) return done({});
@@ -135,7 +131,7 @@ void AccessTokens::erase(const TokenHash& token) {
 
 void AccessTokens::remove_session(const std::string& session, bool comes_back) {
   const std::lock_guard lock(mutex_);
-  if (!comes_back && shares(session)) shared_->remove_session(session);
+  if (!comes_back && shared_ != nullptr) shared_->remove_session(session);
   if (!comes_back) write([session](TokenStore& store) { store.remove_session(session); });
   std::erase_if(entries_, [&](const auto& entry) {
     const bool is_of_it = entry.second.grant.session == session;

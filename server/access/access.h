@@ -62,8 +62,8 @@ class AccessTokens {
   /// Loads the tokens of the store, and stores all later changes by the journal. Throws
   /// StorageError.
   void keep_in(TokenStore& store, Journal& journal);
-  /// Signs new tokens, and stores the issued ones in `shared` instead of the store. Tokens of
-  /// replays are excepted, because only one node has a replay. Call it before other functions.
+  /// Signs new tokens, and stores the issued ones in `shared` instead of the store. Call it before
+  /// other functions.
   void share(SharedTokens& shared, TokenSigner signer);
 
   /// A new token, or the reason why there is none.
@@ -118,7 +118,6 @@ class AccessTokens {
     std::optional<SteadyClock::time_point> end;  // time of expiry; absent: token of add()
   };
   void remove_old();
-  bool shares(const std::string& session) const;
   /// Adds an issued token. Returns false if there are too many.
   bool insert(const TokenHash& hash, ValidToken token);
   void erase(const TokenHash& token);

@@ -68,7 +68,8 @@ void ClusterNode::look_at(const LocatedSession& entry) {
   if (!is_wanted(entry)) return;
   {
     const std::lock_guard lock(mutex_);
-    if (!reserved_.insert(entry.number).second) return;
+    if (reserved_.contains(entry.number)) return;
+    reserved_.insert(entry.number);
   }
   post([this, number = entry.number] { take(number); });
 }

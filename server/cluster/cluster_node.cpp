@@ -202,8 +202,8 @@ void ClusterNode::stop() {
 }
 
 NodeInfo ClusterNode::describe() const {
-  return {name(),   instance_,      settings_.public_url,   to_string(best_instruction_set()),
-          version_, cores_ - load_, !draining_ && !leaving_};
+  return {name(),   instance_,      settings_.public_url,    to_string(best_instruction_set()),
+          version_, cores_ - load_, !draining_ && !leaving_, host_->replays()};
 }
 
 void ClusterNode::post(std::function<void()> task) {
@@ -308,11 +308,34 @@ InstructionSet ClusterNode::common_instructions(InstructionSet greatest) const {
 
 std::optional<std::string> ClusterNode::url_of(const LocatedSession& session) const {
   // The request waits if the owner may have failed, and is answered after its next renewal.
-  const auto answering = renewal_.load() * 3 / 2;
-  if (session.owner.empty() || !nodes_.is_seen_within(session.owner, answering)) return {};
+  if (session.owner.empty() || !nodes_.is_seen_within(session.owner, entry_age())) return {};
   const auto node = nodes_.find(session.owner);
   if (!node) return {};
   return node->url;
+}
+
+std::vector<LocatedSession> ClusterNode::replays() const {
+  std::vector<LocatedSession> replays;
+  for (const NodeInfo& node : nodes_.seen_within(Lease::kOthersTime)) {
+    if (node.name == name()) continue;
+    for (const auto& [number, shown] : node.replays) {
+      LocatedSession replay;
+      replay.number = number;
+      replay.name = shown;
+      replay.owner = node.name;
+      replay.epoch = 1;
+      replays.push_back(std::move(replay));
+    }
+  }
+  return replays;
+}
+
+std::optional<LocatedSession> ClusterNode::find(std::uint64_t session) const {
+  if (auto located = locator_.find(session)) return located;
+  for (LocatedSession& replay : replays()) {
+    if (replay.number == session) return std::move(replay);
+  }
+  return {};
 }
 
 std::vector<std::string> ClusterNode::urls() const {

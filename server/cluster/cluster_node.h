@@ -71,7 +71,7 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   /// Returns the instruction set that all present nodes have, at most `greatest`.
   InstructionSet common_instructions(InstructionSet greatest) const;
   /// Adds a new session with its first log entry, owned by this node. Returns its number. Waits.
-  /// Throws NatsError; its kind is `conflict` if the name is in use.
+  /// Throws NameInUse or another NatsError.
   std::uint64_t add_session(const std::string& name, const std::string& instruction_set,
                             const std::string& settings, const LogEntry& first);
   /// Removes a session of this node from the cluster, and then calls `done`.
@@ -80,7 +80,14 @@ class ClusterNode final : public SessionReplicas, public SendGate {
 
   /// Returns the sessions of the cluster.
   std::vector<LocatedSession> sessions() const { return locator_.all(); }
-  std::optional<LocatedSession> find(std::uint64_t session) const { return locator_.find(session); }
+  /// Returns the replays of the other nodes.
+  std::vector<LocatedSession> replays() const;
+  /// Returns a session of the cluster, or a replay of another node.
+  std::optional<LocatedSession> find(std::uint64_t session) const;
+  /// Returns a number that no other session of the cluster has. Waits. Throws NatsError.
+  std::uint64_t new_number() { return locator_.next_number(); }
+  /// Returns the time within which each present node renews its entry.
+  std::chrono::milliseconds entry_age() const { return renewal_.load() * 3 / 2; }
   /// Returns the URL of the session's owner, or nothing if it is unknown or silent.
   std::optional<std::string> url_of(const LocatedSession& session) const;
   /// Returns the tokens that all nodes share, or null if the settings have no key.
@@ -148,6 +155,9 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   void take(std::uint64_t session);
   bool is_silent(const std::string& node);
   void lose(std::uint64_t session);
+  /// Ends a session that the node does not host any more, and then permits that the node takes it
+  /// again.
+  void end_lost(std::uint64_t session, const std::string& url);
   /// Returns false if the session is not hosted.
   bool forget(std::uint64_t session);
   void release(std::uint64_t session, const std::string& successor);
@@ -160,8 +170,9 @@ class ClusterNode final : public SessionReplicas, public SendGate {
                         const std::function<LocatedSession(const LocatedSession&)>& change);
 
   std::shared_ptr<SessionStream> make_stream(SessionStream::Place place);
-  /// Prevents that the node takes or loses the session, or permits it again.
-  void reserve(std::uint64_t session, bool is_reserved);
+  /// Prevents that the node takes or loses the session, until as many calls of unreserve().
+  void reserve(std::uint64_t session);
+  void unreserve(std::uint64_t session);
   std::optional<Hosted> find_hosted(std::uint64_t session) const;
   void post(std::function<void()> task);
   void measure_load(Time now);
@@ -197,7 +208,8 @@ class ClusterNode final : public SessionReplicas, public SendGate {
 
   mutable std::mutex mutex_;  // guards the members below
   std::map<std::uint64_t, Hosted> hosted_;
-  std::set<std::uint64_t> reserved_;  // sessions that are being created, taken or moved
+  // Sessions that are being created, taken, moved or ended.
+  std::multiset<std::uint64_t> reserved_;
   std::map<std::uint64_t, Move> moves_;
   std::map<std::uint64_t, Time> failed_;  // times at which a take-over failed
   std::map<std::uint64_t, Time> orphans_;

@@ -45,7 +45,7 @@ std::uint64_t ClusterNode::add_session(const std::string& name, const std::strin
   place.last_entry = first.sequence;
   place.name = name;
   place.settings = settings;
-  reserve(entry.number, true);
+  reserve(entry.number);
   try {
     entry = locator_.create(entry);
     place.last_message = streams_.logs.append(
@@ -54,12 +54,14 @@ std::uint64_t ClusterNode::add_session(const std::string& name, const std::strin
         {{kEpochHeader, "1"}, {kWriteHeader, "1.0"}});
   } catch (const NatsError&) {
     if (entry.revision > 0) locator_.remove(entry);
-    reserve(entry.number, false);
+    unreserve(entry.number);
     throw;
   }
-  const std::lock_guard lock(mutex_);
-  hosted_[entry.number] = {make_stream(std::move(place)), entry};
-  reserved_.erase(entry.number);
+  {
+    const std::lock_guard lock(mutex_);
+    hosted_[entry.number] = {make_stream(std::move(place)), entry};
+  }
+  unreserve(entry.number);
   return entry.number;
 }
 
@@ -104,15 +106,14 @@ LocatedSession ClusterNode::update(
       const auto found = hosted_.find(session);
       if (found != hosted_.end()) found->second.entry = changed;
       return changed;
+    } catch (const NameInUse&) {
+      throw;
     } catch (const NatsError& error) {
       if (error.kind() != NatsError::Kind::conflict || attempt == kUpdateAttempts) throw;
     }
     const auto current = locator_.read(session);
     if (!current || current->owner != name() || current->epoch != hosted->entry.epoch) {
       throw NatsError(NatsError::Kind::conflict, "the session has another owner");
-    }
-    if (current->revision == hosted->entry.revision) {
-      throw NatsError(NatsError::Kind::conflict, "the name is in use");
     }
     const std::lock_guard lock(mutex_);
     const auto found = hosted_.find(session);
@@ -153,18 +154,20 @@ bool ClusterNode::is_silent(const std::string& node) {
 }
 
 void ClusterNode::take(std::uint64_t session) {
-  const auto unreserve = [&](bool has_failed) {
-    const std::lock_guard lock(mutex_);
-    reserved_.erase(session);
-    orphans_.erase(session);
-    if (has_failed) failed_[session] = clock_.now();
+  const auto finish = [&](bool has_failed) {
+    {
+      const std::lock_guard lock(mutex_);
+      orphans_.erase(session);
+      if (has_failed) failed_[session] = clock_.now();
+    }
+    unreserve(session);
   };
   try {
     const auto before = locator_.read(session);
     const bool is_other = before && !before->owner.empty() && before->owner != name();
     // Another node may have taken it, or released it to another one, since it was looked at.
-    if (!before || !is_wanted(*before)) return unreserve(false);
-    if (is_other && !is_silent(before->owner)) return unreserve(false);
+    if (!before || !is_wanted(*before)) return finish(false);
+    if (is_other && !is_silent(before->owner)) return finish(false);
     const LocatedSession entry = locator_.take(*before, name());
     const SessionImage image = take_image(streams_, entry);
     store_image(storage_, image);
@@ -185,31 +188,39 @@ void ClusterNode::take(std::uint64_t session) {
     log_info("session {} is taken from {}, epoch {}", id_of_session(session),
              before->owner.empty() ? "its previous node" : before->owner, entry.epoch);
     host_->start_taken(image.stored);
-    unreserve(false);
+    finish(false);
   } catch (const NatsError& error) {
     log_warning("session {} is not taken: {}", id_of_session(session), error.what());
-    unreserve(false);
+    finish(false);
   } catch (const std::exception& error) {
     log_error("session {} cannot be taken: {}", id_of_session(session), error.what());
-    unreserve(true);
+    finish(true);
   }
 }
 
 void ClusterNode::lose(std::uint64_t session) {
-  if (!forget(session)) return;
+  reserve(session);  // the node may not take it again before its end
+  if (!forget(session)) return unreserve(session);
   const auto entry = locator_.find(session);
   log_warning("session {} has another owner{}", id_of_session(session),
               entry ? ": " + entry->owner : "");
-  host_->end_lost(session, entry ? url_of(*entry).value_or("") : "");
+  end_lost(session, entry ? url_of(*entry).value_or("") : "");
 }
 
-void ClusterNode::reserve(std::uint64_t session, bool is_reserved) {
+void ClusterNode::end_lost(std::uint64_t session, const std::string& url) {
+  host_->end_lost(session, url, [this, session] { unreserve(session); });
+}
+
+void ClusterNode::reserve(std::uint64_t session) {
   const std::lock_guard lock(mutex_);
-  if (is_reserved) {
-    reserved_.insert(session);
-  } else {
-    reserved_.erase(session);
-  }
+  reserved_.insert(session);
+}
+
+void ClusterNode::unreserve(std::uint64_t session) {
+  const std::lock_guard lock(mutex_);
+  const auto found = reserved_.find(session);
+  VAT_CHECK(found != reserved_.end());
+  reserved_.erase(found);
 }
 
 std::optional<ClusterNode::MoveRefusal> ClusterNode::move(std::uint64_t session,
@@ -235,7 +246,7 @@ std::optional<ClusterNode::MoveRefusal> ClusterNode::move(std::uint64_t session,
   const bool has_begun = host_->stop_for_move(
       session, [this, session, node] { post([this, session, node] { release(session, node); }); });
   if (!has_begun) {
-    reserve(session, false);
+    unreserve(session);
     end_move(session, {});
   }
   return {};
@@ -253,9 +264,11 @@ void ClusterNode::release(std::uint64_t session, const std::string& successor) {
     log_warning("session {} is not released: {}", id_of_session(session), error.what());
   }
   // Without a release, this node takes the session again from its last state.
-  forget(session);
-  reserve(session, false);
-  host_->end_lost(session, url.value_or(""));
+  if (forget(session)) {
+    end_lost(session, url.value_or(""));
+  } else {
+    unreserve(session);  // it was lost during the hand-over, which has ended it
+  }
   end_move(session, url);
 }
 

@@ -28,11 +28,15 @@ std::pair<std::uint64_t, std::string_view> place_of(std::uint64_t session,
 }  // namespace
 
 std::string write_node(const NodeInfo& node) {
-  return Json{{"node", node.name},       {"instance", node.instance},
-              {"url", node.url},         {"instruction_set", node.instruction_set},
-              {"version", node.version}, {"room", node.room},
-              {"accepts", node.accepts}}
-      .dump();
+  Json json{{"node", node.name},       {"instance", node.instance},
+            {"url", node.url},         {"instruction_set", node.instruction_set},
+            {"version", node.version}, {"room", node.room},
+            {"accepts", node.accepts}};
+  // Most nodes have none, and all nodes receive the entry often.
+  for (const auto& [number, name] : node.replays) {
+    json["replays"].push_back({{"number", number}, {"name", name}});
+  }
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 bool has_instructions(const NodeInfo& node, const std::string& instruction_set) {
@@ -46,9 +50,13 @@ std::optional<NodeInfo> read_node(const std::string& name, const std::string& te
   if (!json.is_object()) return {};
   try {
     if (json.at("node") != name) return {};
-    return NodeInfo{
+    NodeInfo node{
         json.at("node"),    json.at("instance"), json.at("url"),    json.at("instruction_set"),
         json.at("version"), json.at("room"),     json.at("accepts")};
+    for (const Json& replay : json.value("replays", Json::array())) {
+      node.replays[replay.at("number")] = replay.at("name");
+    }
+    return node;
   } catch (const Json::exception&) {
     return {};
   }

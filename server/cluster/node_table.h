@@ -20,8 +20,9 @@ struct NodeInfo {
   std::string url;              ///< URL at which clients reach the node
   std::string instruction_set;  ///< best instruction set of the machine
   std::string version;
-  double room = 0;      ///< unused processor cores
-  bool accepts = true;  ///< false: the node takes no further sessions
+  double room = 0;                                 ///< unused processor cores
+  bool accepts = true;                             ///< false: the node takes no further sessions
+  std::map<std::uint64_t, std::string> replays{};  ///< replays on the node: number and name
 };
 
 std::string write_node(const NodeInfo& node);

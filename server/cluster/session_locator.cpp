@@ -224,8 +224,13 @@ void SessionLocator::take_name(const std::string& name, std::uint64_t number) {
     // A node that ended during a creation or removal may have left the name without a session.
     const auto entry = bucket_.get(key_of_name(name));
     if (entry && entry->value == value) return;
-    if (entry && read(stored_number_of(entry->value))) throw;
-    bucket_.put(key_of_name(name), value, entry ? entry->revision : Bucket::kNone);
+    if (entry && read(stored_number_of(entry->value))) throw NameInUse(name);
+    try {
+      bucket_.put(key_of_name(name), value, entry ? entry->revision : Bucket::kNone);
+    } catch (const NatsError& later) {
+      if (later.kind() == NatsError::Kind::conflict) throw NameInUse(name);
+      throw;
+    }
   }
 }
 
@@ -234,7 +239,7 @@ void SessionLocator::check_name(const LocatedSession& session) {
   const auto entry = bucket_.get(key_of_name(session.name));
   if (entry && entry->value == std::to_string(session.number)) return;
   remove(session);
-  throw NatsError(NatsError::Kind::conflict, session.name + ": the name is in use");
+  throw NameInUse(session.name);
 }
 
 void SessionLocator::free_name(const std::string& name, std::uint64_t number) {

@@ -28,6 +28,13 @@ struct LocatedSession {
   std::uint64_t revision = 0;  ///< see Bucket
 };
 
+/// Failure of a creation or renaming: another session of the cluster has the name.
+class NameInUse : public NatsError {
+ public:
+  explicit NameInUse(const std::string& name)
+      : NatsError(Kind::conflict, name + ": the name is in use") {}
+};
+
 /// Directory of a cluster's sessions: a bucket, and a copy of it that follows the changes. A change
 /// of an entry requires the revision of the entry. Thread-safe. Functions that wait throw
 /// NatsError; its kind is `conflict` if another node has changed the entry.
@@ -46,7 +53,7 @@ class SessionLocator {
 
   /// Returns a number that no session of the cluster has had. Waits.
   std::uint64_t next_number();
-  /// Adds a session. A name that is not empty must be unique. Waits.
+  /// Adds a session. A name that is not empty must be unique. Waits. Throws NameInUse.
   LocatedSession create(LocatedSession session);
   /// Makes `node` the owner, with the next epoch. Waits.
   LocatedSession take(const LocatedSession& session, const std::string& node);
@@ -54,7 +61,7 @@ class SessionLocator {
   LocatedSession renew(const LocatedSession& session);
   /// Removes the owner, and names the node that should take the session. Waits.
   LocatedSession release(const LocatedSession& session, const std::string& successor);
-  /// Changes the name, which must be unique. Waits.
+  /// Changes the name, which must be unique. Waits. Throws NameInUse.
   LocatedSession rename(const LocatedSession& session, const std::string& name);
   /// Removes the session. Waits.
   void remove(const LocatedSession& session);

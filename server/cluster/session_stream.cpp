@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/support/check.h"
+#include "server/cluster/session_locator.h"
 #include "server/support/log.h"
 
 namespace vat {
@@ -72,10 +73,11 @@ void SessionStream::configure(const std::string& name, const std::string& settin
       executor_, [self = shared_from_this(), name, settings, done = std::move(done)]() mutable {
         try {
           self->renamed_(name);
+        } catch (const NameInUse&) {
+          return done(StorageError::Kind::name_used);
         } catch (const NatsError& error) {
           log_warning("session s{}: its name stays: {}", self->session_, error.what());
-          return done(error.kind() == NatsError::Kind::conflict ? StorageError::Kind::locked
-                                                                : StorageError::Kind::unreachable);
+          return done(StorageError::Kind::unreachable);
         }
         {
           const std::lock_guard lock(self->mutex_);

@@ -35,8 +35,8 @@ class SessionStream final : public SessionReplica,
     std::uint64_t manifest_message = 0;  ///< number of the manifest's message; 0: none
   };
   /// `executor` runs work that waits. `lost` is called once if another node has become the owner.
-  /// `renamed` is called on `executor` before a new name is stored, and throws NatsError if the
-  /// name is in use. The other arguments must outlive the stream.
+  /// `renamed` is called on `executor` before a new name is stored, and throws NameInUse or another
+  /// NatsError. The other arguments must outlive the stream.
   SessionStream(ClusterStreams& streams, const Lease& lease, Clock& clock,
                 boost::asio::any_io_executor executor, Place place, std::function<void()> lost,
                 std::function<void(const std::string&)> renamed);

@@ -72,6 +72,8 @@ std::optional<RpcResult> AccessControl::enter(PendingReply& reply, std::string_v
     // At once, because the client may have sent further requests already.
     const Grant before = std::exchange(client->access, use->grant);
     client->unchecked.reset();
+    // The owner of a relayed session grants the same access, also to a client that has joined.
+    if (use->grant.role == Role::admin && client->relay) client->relay->enter(std::string(token));
     Json answer{{"role", to_string(use->grant.role)}};
     if (!use->grant.session.empty()) answer["session"] = use->grant.session;
     resources_.tokens.store_use(
@@ -208,6 +210,27 @@ std::optional<RpcError> AccessControl::issue_ticket(PendingReply& reply, Role ro
             Json{{"token", *issued.token}, {"role", to_string(role)}, {"seconds", time.count()}});
       });
   return {};
+}
+
+void AccessControl::answer_created(PendingReply& reply, RpcResult result) {
+  auto* const created = std::get_if<Json>(&result);
+  bool is_relayed = false;
+  {
+    const std::lock_guard lock(tables_.mutex);
+    const Client* client = tables_.clients.find(reply);
+    is_relayed = client != nullptr && client->is_relayed;
+  }
+  if (created == nullptr || created->contains("ticket") || !is_relayed) {
+    return reply.answer(result);
+  }
+  Grant grant{Role::owner, created->at("session"), true};
+  resources_.tokens.issue(
+      std::move(grant), 1, resources_.settings.access.ticket_time,
+      [content = std::move(*created), waiting = std::make_shared<PendingReply>(std::move(reply))](
+          const AccessTokens::Issued& issued) mutable {
+        if (issued.token) content["ticket"] = *issued.token;
+        waiting->answer(content);
+      });
 }
 
 }  // namespace vat

@@ -33,6 +33,9 @@ class AccessControl {
   /// returned instead.
   std::optional<RpcError> issue_ticket(PendingReply& reply, Role role,
                                        const std::optional<SessionId>& session);
+  /// Answers with a new session. If another node relays the client, the result contains a ticket
+  /// for the owner of the session, because the client joins by another link.
+  void answer_created(PendingReply& reply, RpcResult result);
 
  private:
   std::optional<AccessTokens::Use> use_token(std::string_view token, const TokenHash& hash);

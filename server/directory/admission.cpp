@@ -80,7 +80,9 @@ Role Admission::role_in(const Client& client, SessionNumber session) const {
   const bool is_creator = found != tables_.sessions.running().end() &&
                           found->second->summary().creator == client.outbox->id();
   if (is_creator) return Role::owner;
-  return client.session == session ? client.outbox->role() : Role::viewer;
+  if (client.session == session) return client.outbox->role();
+  const bool is_invited = client.access.is_invitation && client.access.session == to_id(session);
+  return is_invited ? client.access.role : Role::viewer;
 }
 
 bool Admission::is_abandoned(SessionNumber session) const {

@@ -33,8 +33,8 @@ std::optional<RpcError> find_excess(const Recording& recording) {
 }  // namespace
 
 ReplayOpener::ReplayOpener(ServerResources& resources, DirectoryTables& tables,
-                           Admission& admission)
-    : resources_(resources), tables_(tables), admission_(admission) {}
+                           Admission& admission, AccessControl& access)
+    : resources_(resources), tables_(tables), admission_(admission), access_(access) {}
 
 std::optional<RpcResult> ReplayOpener::import_recording(PendingReply& reply,
                                                         const Imports::Chunk& part) {
@@ -164,9 +164,12 @@ void ReplayOpener::open_stored(PendingReply& reply, const ReplaySource& source,
 void ReplayOpener::open_recording(PendingReply& reply, std::shared_ptr<const Recording> recording,
                                   const std::string& name, SessionCreator creator) {
   try {
-    reply.answer(make_replay(std::move(recording), name, std::move(creator)));
+    access_.answer_created(reply, make_replay(std::move(recording), name, std::move(creator)));
   } catch (const StorageError& error) {
     reply.answer(not_allowed(error.what()));
+  } catch (const NatsError& error) {
+    log_error("replay.open failed: {}", error.what());
+    reply.answer(storage_failed(StorageError::Kind::unreachable));
   } catch (const std::exception& error) {
     log_error("replay.open failed: {}", error.what());
     reply.answer(internal_error());
@@ -185,10 +188,14 @@ RpcResult ReplayOpener::make_replay(std::shared_ptr<const Recording> recording,
   auto share = resources_.budget.take(resources_of(simulation));
   if (const auto* excess = std::get_if<LimitExcess>(&share)) return limit_reached(*excess);
 
+  ClusterNode* const cluster = resources_.cluster.get();
+  const SessionNumber in_cluster = cluster == nullptr ? 0 : kFirstReplay + cluster->new_number();
+
   const std::lock_guard lock(tables_.mutex);
   if (auto error = admission_.refuse_session()) return *std::move(error);
   if (auto error = admission_.refuse_replay()) return *std::move(error);
-  const SessionNumber number = tables_.sessions.next_replay_number();
+  const SessionNumber number =
+      cluster == nullptr ? tables_.sessions.next_replay_number() : in_cluster;
   auto core = std::make_unique<SessionCore>(
       to_id(number), SessionSettings{shown, admission_.default_role(), false, creator.connection},
       std::move(simulation), std::get<ResourceShare>(std::move(share)), resources_.environment);

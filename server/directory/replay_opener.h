@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "server/directory/admission.h"
+#include "server/directory/access_control.h"
 
 namespace vat {
 
@@ -18,7 +18,8 @@ struct ReplaySource {
 /// Import of recordings, and creation of sessions that replay recordings. Thread-safe.
 class ReplayOpener {
  public:
-  ReplayOpener(ServerResources& resources, DirectoryTables& tables, Admission& admission);
+  ReplayOpener(ServerResources& resources, DirectoryTables& tables, Admission& admission,
+               AccessControl& access);
 
   /// Adds a part of a file. The reply to the last part is sent after the whole file was read.
   std::optional<RpcResult> import_recording(PendingReply& reply, const Imports::Chunk& part);
@@ -39,6 +40,7 @@ class ReplayOpener {
   ServerResources& resources_;
   DirectoryTables& tables_;
   Admission& admission_;
+  AccessControl& access_;
 };
 
 }  // namespace vat

@@ -56,10 +56,11 @@ SessionId to_id(SessionNumber number) {
 std::optional<SessionNumber> number_of(const SessionId& id) {
   SessionNumber number = 0;
   const char* const end = id.data() + id.size();
-  if (!id.starts_with('s')) return {};
+  const bool is_replay = id.starts_with('r');
+  if (!is_replay && !id.starts_with('s')) return {};
   const auto [rest, error] = std::from_chars(id.data() + 1, end, number);
-  if (error != std::errc() || rest != end) return {};
-  return number;
+  if (error != std::errc() || rest != end || number >= kFirstReplay) return {};
+  return is_replay ? kFirstReplay + number : number;
 }
 
 ServerResources::ServerResources(const Catalogue& catalogue_in, ServerSettings settings_in,
@@ -73,7 +74,8 @@ ServerResources::ServerResources(const Catalogue& catalogue_in, ServerSettings s
       budget({settings.limits.max_particles_in_all, settings.limits.max_springs_in_all}),
       slow_tick_gate(runner.thread_count()),
       frame_threads(std::max<std::size_t>(1, runner.thread_count() / 2)),
-      downloads(settings.limits.max_download_bytes),
+      downloads(settings.limits.max_download_bytes,
+                settings.cluster.is_used() ? settings.cluster.node : std::string()),
       storage(open_storage(settings, clock)),
       saved_in_memory(storage ? nullptr : std::make_unique<SavedInMemory>()),
       cluster(make_cluster_node(settings, storage.get(), clock, runner.thread_count())),

@@ -25,7 +25,7 @@ inline constexpr SessionNumber kFirstReplay = SessionNumber{1} << 62;
 /// Identifier of a session. An id is not used twice.
 using SessionId = std::string;
 SessionId to_id(SessionNumber number);
-/// Returns the number in the id of a session that is no replay ("s12"), or nothing.
+/// Returns the number in an id ("s12", or "r3" of a replay), or nothing.
 std::optional<SessionNumber> number_of(const SessionId& id);
 
 struct ServerSettings {

@@ -18,7 +18,7 @@ SessionDirectory::SessionDirectory(const Catalogue& catalogue, ServerSettings se
     : resources_(catalogue, std::move(settings), clock, methods),
       admission_(resources_, tables_),
       access_(resources_, tables_, admission_),
-      replays_(resources_, tables_, admission_),
+      replay_opener_(resources_, tables_, admission_, access_),
       recoverer_(resources_, tables_, admission_,
                  [this](PendingReply& reply, const std::optional<SessionId>& id,
                         JoinRequest request) { return join(reply, id, std::move(request)); }),
@@ -133,8 +133,9 @@ std::variant<SessionId, RpcError> SessionDirectory::create(std::string name, con
   } catch (const StorageError& error) {
     log_error("a session cannot be stored: {}", error.what());
     return storage_failed(error.kind());
+  } catch (const NameInUse&) {
+    return name_in_use();
   } catch (const NatsError& error) {
-    if (error.kind() == NatsError::Kind::conflict) return name_in_use();
     log_error("a session cannot be stored: {}", error.what());
     return storage_failed(StorageError::Kind::unreachable);
   }
@@ -180,8 +181,10 @@ std::optional<RpcError> SessionDirectory::create_later(PendingReply& reply, std:
       [this, creator = std::get<SessionCreator>(std::move(admitted)), reply = std::move(reply),
        name = std::move(name), scene = std::move(scene), level]() mutable {
         const ThreadPoolRunner::HelperReservation reservation(resources_.runner);
-        answer_with(reply, "session.create failed",
-                    [&] { return create_from(scene, level, std::move(name), std::move(creator)); });
+        answer_with(
+            reply, "session.create failed",
+            [&] { return create_from(scene, level, std::move(name), std::move(creator)); },
+            [&](RpcResult result) { access_.answer_created(reply, std::move(result)); });
       });
   return {};
 }
@@ -236,6 +239,12 @@ std::vector<SessionDirectory::Listed> SessionDirectory::list(const PendingReply&
 std::optional<RpcError> SessionDirectory::join(PendingReply& reply,
                                                const std::optional<SessionId>& id,
                                                JoinRequest request) {
+  return join_or_wait(reply, id, std::move(request), true);
+}
+
+std::optional<RpcError> SessionDirectory::join_or_wait(PendingReply& reply,
+                                                       const std::optional<SessionId>& id,
+                                                       JoinRequest request, bool may_wait) {
   const std::lock_guard lock(tables_.mutex);
   Client* const client = tables_.clients.find(reply);
   if (client == nullptr) return not_allowed("the connection is closed");
@@ -262,6 +271,7 @@ std::optional<RpcError> SessionDirectory::join(PendingReply& reply,
     bool is_missing = false;
     auto error = join_elsewhere(reply, wanted, request, is_missing);
     if (!is_missing) return error;
+    if (may_wait && wait_for_replay(reply, wanted, request)) return {};
     return no_such_session(id ? *id : "at all", "/session");
   }
   const auto& [number, session] = *found;

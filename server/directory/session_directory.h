@@ -36,7 +36,7 @@ class SessionDirectory : private ClusterHost {
   ServerResources& resources() { return resources_; }
   const ServerResources& resources() const { return resources_; }
   AccessControl& access() { return access_; }
-  ReplayOpener& replays() { return replays_; }
+  ReplayOpener& replay_opener() { return replay_opener_; }
 
   /// Adds a connection. Returns false if the connection is refused. If another node relays the
   /// client, `access` is the access that the client has there.
@@ -91,6 +91,15 @@ class SessionDirectory : private ClusterHost {
                                 const std::string& reason);
   /// Hands a session over to another node of the cluster. Answers after its state is stored.
   std::optional<RpcError> move(PendingReply& reply, const SessionId& id, const std::string& node);
+  /// Sends a request about the session that its parameters name to the owner of the session, or
+  /// answers with the error `moved`. Returns false if another node does not have the session.
+  bool ask_owner(PendingReply& reply, const RpcRequest& request);
+  /// Creates a session from a saved scene at the node of the client's session, whose scenes the
+  /// client uses. Returns false if this node creates the session.
+  bool create_at_owner(PendingReply& reply, const RpcRequest& request);
+  /// Returns the function that notes a result of replay.open on another node, see NoteResult of
+  /// RelayedClient.
+  std::function<void(Json& result)> note_replay_of(ConnectionId creator);
   /// Implement RelayHost::Server.
   bool watch(const std::shared_ptr<ClientOutbox>& viewer, const SessionId& id,
              const Subscription& wanted);
@@ -127,22 +136,30 @@ class SessionDirectory : private ClusterHost {
   void remove_stored(SessionNumber number);
   InstructionSet instructions_for_new() const;
 
-  // Implemented in session_directory_cluster.cpp.
+  // Implemented in session_directory_cluster.cpp and session_directory_relay.cpp.
   void start_taken(const StoredSession& session) override;
-  void end_lost(std::uint64_t session, const std::string& url) override;
+  void end_lost(std::uint64_t session, const std::string& url, std::function<void()> done) override;
   bool stop_for_move(std::uint64_t session, std::function<void()> done) override;
   void create_for(const std::string& request,
                   std::function<void(const std::string&)> answer) override;
+  std::map<std::uint64_t, std::string> replays() const override;
   void cluster_changed() override;
   /// Answers with a session that was created for another node, and a ticket for its owner.
   void answer_created(const SessionId& id, const std::function<void(const std::string&)>& answer);
   /// Creates the session on another node of the cluster, if one has more room. Waits.
   std::optional<RpcResult> create_elsewhere(const Json& scene, Level level,
                                             const std::string& name);
+  /// As join(). If `may_wait` is false, does not wait for an unknown replay.
+  std::optional<RpcError> join_or_wait(PendingReply& reply, const std::optional<SessionId>& id,
+                                       JoinRequest request, bool may_wait);
   /// Returns the error for a session on another node. If the session has no owner now, the request
   /// waits for one, and the function returns nothing. `is_missing` is set if there is no session.
   std::optional<RpcError> join_elsewhere(PendingReply& reply, const std::optional<SessionId>& id,
                                          JoinRequest& request, bool& is_missing);
+  /// Keeps the request until the other nodes have listed their replays, if the id is that of a
+  /// replay. Returns false otherwise.
+  bool wait_for_replay(PendingReply& reply, const std::optional<SessionId>& id,
+                       JoinRequest& request);
   /// Returns a session of the cluster that this node does not own.
   std::optional<LocatedSession> find_elsewhere(const std::optional<SessionId>& id) const;
   void add_elsewhere(const Client& client, std::vector<Listed>& list) const;
@@ -155,6 +172,12 @@ class SessionDirectory : private ClusterHost {
   /// owner without a lease has no name.
   std::optional<RelayDoor::Owner> present_owner(const SessionId& id) const;
   void note_granted(ConnectionId id, const SessionId& session, const Grant& grant);
+  void send_request(const Client& client, PendingReply& reply, const RpcRequest& request,
+                    const SessionId& session, const RelayDoor::Owner& owner,
+                    RelayedRequest::NoteResult note);
+  /// Returns the access that the owner of a session checks or grants.
+  RelayEntry entry_for(const Client& client, const SessionId& id,
+                       const std::optional<std::string>& resume);
   /// Joins a session of another node, which serves the client through this node.
   void join_by_relay(Client& client, PendingReply& reply, const LocatedSession& session,
                      const JoinRequest& request);
@@ -186,15 +209,17 @@ class SessionDirectory : private ClusterHost {
   DirectoryTables tables_;
   Admission admission_;
   AccessControl access_;
-  ReplayOpener replays_;
+  ReplayOpener replay_opener_;
   SessionRecoverer recoverer_;
   const std::unique_ptr<Timer> expiry_timer_;
   SteadyClock::time_point queue_check_{};  // next check of the queues; guarded by the lock
   bool drain_time_is_over_ = false;        // guarded by the lock
-  /// Requests session.join for sessions without an owner; guarded by the lock.
+  /// Requests session.join for sessions without an owner and for unknown replays; guarded by the
+  /// lock.
   struct WaitingJoin {
     std::optional<SessionId> id;
     AbsentSession::Waiting join;
+    std::optional<SteadyClock::time_point> until{};  ///< set: for an unknown replay
   };
   std::vector<WaitingJoin> waiting_joins_;
   std::function<void()> cluster_change_;

@@ -51,11 +51,12 @@ void SessionDirectory::tell_moved(SessionNumber number, const std::string& url) 
   tables_.clients.close_session(number, moved, moved);
 }
 
-void SessionDirectory::end_lost(std::uint64_t session, const std::string& url) {
+void SessionDirectory::end_lost(std::uint64_t session, const std::string& url,
+                                std::function<void()> done) {
   std::vector<AbsentSession::Waiting> waiting;
   {
     const std::lock_guard lock(tables_.mutex);
-    if (admission_.stopped()) return;
+    if (admission_.stopped()) return done();
     tell_moved(session, url);
     if (tables_.sessions.running().contains(session)) {
       tables_.sessions.at(session).close(Session::End::moved, {});
@@ -69,7 +70,10 @@ void SessionDirectory::end_lost(std::uint64_t session, const std::string& url) {
   for (AbsentSession::Waiting& one : waiting) one.reply.answer(moved_to(to_id(session), url));
   resources_.storage->journal().post(
       [&storage = *resources_.storage, session] { storage.sessions().close(session); },
-      [&storage = *resources_.storage](auto) { storage.remove_closed(); });
+      [&storage = *resources_.storage, done = std::move(done)](auto) {
+        storage.remove_closed();
+        done();
+      });
   log_info("session {} is on another node: {}", to_id(session), url);
 }
 
@@ -119,7 +123,13 @@ std::optional<RpcResult> SessionDirectory::create_elsewhere(const Json& scene, L
   if (resources_.cluster == nullptr) return {};
   const std::string node = resources_.cluster->best_node();
   if (node == resources_.cluster->name()) return {};
-  const Json request{{"name", name}, {"scene", scene}, {"level", to_string(level)}};
+  Json content = scene;  // a saved scene has no name on the other node
+  if (scene.is_string() && !resources_.catalogue.find(scene.get_ref<const std::string&>())) {
+    auto saved = find_saved_scene(scene.get_ref<const std::string&>(), resources_.environment);
+    if (auto* error = std::get_if<RpcError>(&saved)) return *std::move(error);
+    content = std::get<Json>(std::move(saved));
+  }
+  const Json request{{"name", name}, {"scene", std::move(content)}, {"level", to_string(level)}};
   try {
     return read_create_answer(resources_.cluster->create_at(node, request.dump()));
   } catch (const std::exception& error) {
@@ -163,77 +173,26 @@ std::optional<RpcError> SessionDirectory::join_elsewhere(PendingReply& reply,
   return {};
 }
 
-bool SessionDirectory::can_relay(const LocatedSession& session) const {
-  return resources_.cluster->accepts(session.owner) &&
-         !resources_.relay->has_moved(to_id(session.number), session.epoch);
-}
-
-void SessionDirectory::join_by_relay(Client& client, PendingReply& reply,
-                                     const LocatedSession& session, const JoinRequest& request) {
+bool SessionDirectory::wait_for_replay(PendingReply& reply, const std::optional<SessionId>& id,
+                                       JoinRequest& request) {
   VAT_CHECK(tables_.mutex.is_held());
-  const SessionId id = to_id(session.number);
-  leave_session(client, PendingReply(client.outbox, {}));
-  RelayedClient::Entry entry;
-  entry.access = client.unchecked ? client.unchecked->before : client.access;
-  entry.is_open = resources_.settings.access.mode == AccessMode::open;
-  const auto ticket = client.tickets.find(id);
-  const auto granted = client.relay_access.find(id);
-  if (granted != client.relay_access.end()) {
-    entry.access = granted->second;
-  } else if (request.resume && client.unchecked) {
-    entry.token = *request.resume;  // does not count as a use
-  } else if (ticket != client.tickets.end()) {
-    entry.token = ticket->second;
-  } else if (client.unchecked) {
-    entry.token = client.unchecked->token;
+  if (resources_.cluster == nullptr || !id || number_of(*id).value_or(0) < kFirstReplay) {
+    return false;
   }
-  entry.granted = [this, id, connection = client.outbox->id()](const Grant& grant) {
-    note_granted(connection, id, grant);
-  };
-  Json params{{"session", id}};
-  if (!request.name.empty()) params["name"] = request.name;
-  if (request.resume) params["resume"] = *request.resume;
-  if (request.greatest_role) params["role"] = to_string(*request.greatest_role);
-  client.relay = resources_.relay->open(client.outbox, id, {session.owner, session.epoch});
-  client.relay->join(std::move(reply), std::move(entry), params);
-}
-
-void SessionDirectory::note_granted(ConnectionId id, const SessionId& session, const Grant& grant) {
-  const std::lock_guard lock(tables_.mutex);
-  Client* const client = tables_.clients.find(id);
-  if (client == nullptr) return;
-  client->tickets.erase(session);
-  client->relay_access[session] = grant;
-}
-
-void SessionDirectory::keep_ticket(ConnectionId creator, const RpcResult& created) {
-  const auto* result = std::get_if<Json>(&created);
-  if (resources_.relay == nullptr || result == nullptr || !result->contains("ticket")) return;
-  const std::lock_guard lock(tables_.mutex);
-  Client* const client = tables_.clients.find(creator);
-  if (client != nullptr) client->tickets[result->at("session")] = result->at("ticket");
-}
-
-bool SessionDirectory::watch(const std::shared_ptr<ClientOutbox>& viewer, const SessionId& id,
-                             const Subscription& wanted) {
-  const std::lock_guard lock(tables_.mutex);
-  const auto* found = tables_.sessions.find(id);
-  if (found == nullptr) return false;
-  found->second->watch(viewer, wanted);
+  waiting_joins_.push_back({id,
+                            {std::move(reply), std::move(request)},
+                            resources_.clock.now() + resources_.cluster->entry_age()});
   return true;
 }
 
-void SessionDirectory::unwatch(const SessionId& id, std::shared_ptr<ClientOutbox> viewer) {
+std::map<std::uint64_t, std::string> SessionDirectory::replays() const {
   const std::lock_guard lock(tables_.mutex);
-  const auto* found = tables_.sessions.find(id);
-  if (found != nullptr) found->second->unwatch(std::move(viewer));
-}
-
-std::optional<RelayDoor::Owner> SessionDirectory::present_owner(const SessionId& id) const {
-  const auto located = find_elsewhere(id);
-  if (!located) return {};
-  const bool is_present = resources_.cluster->is_present(located->owner);
-  return RelayDoor::Owner{is_present ? located->owner : "", located->epoch};
+  std::map<std::uint64_t, std::string> replays;
+  const auto& running = tables_.sessions.running();
+  for (auto replay = running.lower_bound(kFirstReplay); replay != running.end(); ++replay) {
+    replays[replay->first] = replay->second->summary().name;
+  }
+  return replays;
 }
 
 void SessionDirectory::cluster_changed() {
@@ -247,8 +206,14 @@ void SessionDirectory::cluster_changed() {
     const std::lock_guard lock(tables_.mutex);
     waiting.swap(waiting_joins_);
   }
+  const auto now = resources_.clock.now();
   for (WaitingJoin& one : waiting) {
-    if (auto error = join(one.join.reply, one.id, std::move(one.join.request))) {
+    const bool is_due = !one.until || now >= *one.until || find_elsewhere(one.id);
+    if (!is_due) {
+      const std::lock_guard lock(tables_.mutex);
+      waiting_joins_.push_back(std::move(one));
+    } else if (auto error =
+                   join_or_wait(one.join.reply, one.id, std::move(one.join.request), !one.until)) {
       one.join.reply.answer(*std::move(error));
     }
   }
@@ -257,12 +222,15 @@ void SessionDirectory::cluster_changed() {
 void SessionDirectory::add_elsewhere(const Client& client, std::vector<Listed>& list) const {
   VAT_CHECK(tables_.mutex.is_held());
   if (resources_.cluster == nullptr) return;
-  for (const LocatedSession& one : resources_.cluster->sessions()) {
+  std::vector<LocatedSession> all = resources_.cluster->sessions();
+  for (LocatedSession& replay : resources_.cluster->replays()) all.push_back(std::move(replay));
+  for (const LocatedSession& one : all) {
     const bool is_here = tables_.sessions.running().contains(one.number) ||
                          tables_.sessions.absent().contains(one.number);
     if (is_here || admission_.refuse_access(client, one.number)) continue;
     SessionSummary summary;
     summary.name = one.name;
+    summary.is_replay = one.number >= kFirstReplay;
     list.push_back({to_id(one.number), std::move(summary), "elsewhere", false, one.owner});
   }
 }
@@ -271,6 +239,11 @@ std::optional<RpcError> SessionDirectory::move(PendingReply& reply, const Sessio
                                                const std::string& node) {
   if (resources_.cluster == nullptr) return not_allowed("the server is no node of a cluster");
   const auto number = number_of(id);
+  if (number && *number >= kFirstReplay) {
+    const std::lock_guard lock(tables_.mutex);
+    if (tables_.sessions.find(id) == nullptr) return no_such_session(id, "/session");
+    return not_allowed("a replay stays on its node");
+  }
   const auto waiting = std::make_shared<PendingReply>(std::move(reply));
   const auto answer = [waiting, id](const std::optional<std::string>& url) {
     if (!url) return waiting->answer(not_recovered(id, "recovering"));

@@ -203,7 +203,9 @@ void SessionDirectory::stop() {
   resources_.storage_threads.join();
   resources_.frame_threads.join();
   if (resources_.storage) resources_.storage->flush();
-  if (resources_.cluster) resources_.cluster->stop();
+  if (resources_.cluster == nullptr) return;
+  resources_.cluster->stop();
+  resources_.storage->flush();  // removals of lost sessions, which inform the node
 }
 
 std::chrono::milliseconds SessionDirectory::expiry_of(SessionNumber session) const {

@@ -27,7 +27,7 @@ class SessionReplica {
   /// See the functions of SessionLog with these names.
   virtual void refuse(std::uint64_t sequence) = 0;
   virtual void reach(std::uint64_t position, Done done) = 0;
-  /// The failure `locked` means that another session has the name.
+  /// The failure is `name_used` if another session has the name.
   virtual void configure(const std::string& name, const std::string& settings, Done done) = 0;
   /// Stores the progress, with the participants. `done` may be empty.
   virtual void write_progress(const SessionProgress& progress, Done done) = 0;

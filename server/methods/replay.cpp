@@ -36,7 +36,7 @@ ServerAction read_recording_import(ObjectReader& params, Errors& errors) {
     add_error(errors, "bad_value", params.path_of("data"), "must be base64, with padding");
   }
   return [part = std::move(part)](SessionDirectory& directory, PendingReply& reply) {
-    return directory.replays().import_recording(reply, part);
+    return directory.replay_opener().import_recording(reply, part);
   };
 }
 
@@ -50,7 +50,7 @@ ServerAction read_replay_open(ObjectReader& params, Errors& errors) {
   }
   if (params.has("name")) source.name = params.text("name", kMaxNameLength);
   return [source](SessionDirectory& directory, PendingReply& reply) -> std::optional<RpcResult> {
-    if (auto error = directory.replays().open(reply, source)) return *std::move(error);
+    if (auto error = directory.replay_opener().open(reply, source)) return *std::move(error);
     return {};
   };
 }

@@ -28,7 +28,7 @@ RelayDoor::RelayDoor(Place place, NatsConnection& connection, ServerMetrics& met
 }
 
 RelayDoor::~RelayDoor() {
-  for (const auto& client : all_clients()) client->fail();  // clients that wait own themselves
+  for (const auto& end : all_ends()) end->fail();  // ends that wait own themselves
 }
 
 std::string RelayDoor::owner_subject(const std::string& node) {
@@ -44,18 +44,40 @@ std::string RelayDoor::next_link() {
   return place_.node + "." + place_.instance + "." + std::to_string(++links_opened_);
 }
 
+RelayPlace RelayDoor::place_of(const std::string& link, const std::string& session,
+                               const Owner& owner) const {
+  return {session, owner.node, owner.epoch, place_.url, client_subject(link)};
+}
+
+std::unique_ptr<RelayLine> RelayDoor::make_line(const std::string& link, const Owner& owner) const {
+  return std::make_unique<RelayLine>(connection_, owner_subject(owner.node), link);
+}
+
 std::shared_ptr<RelayedClient> RelayDoor::open(std::shared_ptr<ClientOutbox> outbox,
                                                const std::string& session, const Owner& owner) {
   const std::lock_guard lock(mutex_);
   const std::string link = next_link();
   auto client = std::make_shared<RelayedClient>(
-      RelayedClient::Place{session, owner.node, owner.epoch, place_.url, client_subject(link)},
-      std::make_unique<RelayLine>(connection_, owner_subject(owner.node), link), std::move(outbox),
+      place_of(link, session, owner), make_line(link, owner), std::move(outbox),
       RelayedClient::Links{[this, session, owner] { return feed(session, owner); },
                            [this, session, owner] { note_move(session, owner.epoch); }},
       clock_);
-  clients_[link] = client;
+  ends_[link] = client;
   return client;
+}
+
+std::shared_ptr<RelayedRequest> RelayDoor::open_request(const std::string& session,
+                                                        const Owner& owner,
+                                                        RelayedRequest::NoteResult note_result) {
+  const std::lock_guard lock(mutex_);
+  const std::string link = next_link();
+  auto request = std::make_shared<RelayedRequest>(
+      place_of(link, session, owner), make_line(link, owner),
+      RelayedRequest::Links{[this, session, owner] { note_move(session, owner.epoch); },
+                            std::move(note_result)},
+      clock_);
+  ends_[link] = request;
+  return request;
 }
 
 std::shared_ptr<RelayFeed> RelayDoor::feed(const std::string& session, const Owner& owner) {
@@ -93,26 +115,26 @@ bool RelayDoor::has_moved(const std::string& session, std::uint64_t epoch) {
 void RelayDoor::receive(const std::string& bytes) {
   auto message = read_relay_message(bytes);
   if (!message) return;
-  std::shared_ptr<RelayedClient> client;
+  std::shared_ptr<RelayEnd> end;
   {
     const std::lock_guard lock(mutex_);
-    const auto found = clients_.find(message->link);
-    if (found != clients_.end()) client = found->second.lock();
+    const auto found = ends_.find(message->link);
+    if (found != ends_.end()) end = found->second.lock();
   }
-  if (client == nullptr) return;
+  if (end == nullptr) return;
   try {
-    client->receive(*std::move(message));
+    end->receive(*std::move(message));
   } catch (const std::exception& error) {  // of another version of this program, for example
     log_error("relay: {}", error.what());
-    client->fail();
+    end->fail();
   }
 }
 
-std::vector<std::shared_ptr<RelayedClient>> RelayDoor::all_clients() {
+std::vector<std::shared_ptr<RelayEnd>> RelayDoor::all_ends() {
   const std::lock_guard lock(mutex_);
-  std::vector<std::shared_ptr<RelayedClient>> all;
-  for (const auto& [link, weak] : clients_) {
-    if (auto client = weak.lock()) all.push_back(std::move(client));
+  std::vector<std::shared_ptr<RelayEnd>> all;
+  for (const auto& [link, weak] : ends_) {
+    if (auto end = weak.lock()) all.push_back(std::move(end));
   }
   return all;
 }
@@ -132,20 +154,20 @@ void RelayDoor::look(const std::function<std::optional<Owner>(const std::string&
     const std::lock_guard lock(mutex_);
     if (clock_.now() - looked_ < kLookInterval) return;
     looked_ = clock_.now();
-    std::erase_if(clients_, [](const auto& entry) { return entry.second.expired(); });
+    std::erase_if(ends_, [](const auto& entry) { return entry.second.expired(); });
     std::erase_if(feeds_, [](const auto& entry) { return entry.second.feed.expired(); });
     std::erase_if(moved_, [&](const auto& entry) {
       const auto owner = owner_of(entry.first);
       return !owner || owner->epoch > entry.second;
     });
   }
-  for (const auto& client : all_clients()) {
-    const RelayedClient::Place& place = client->place();
+  for (const auto& end : all_ends()) {
+    const RelayPlace& place = end->place();
     const auto owner = owner_of(place.session);
     if (owner && (owner->node != place.owner || owner->epoch != place.epoch)) {
-      client->fail();
+      end->owner_changed();
     } else {
-      client->look();
+      end->look();
     }
   }
   for (const auto& feed : all_feeds()) feed->look(patience);

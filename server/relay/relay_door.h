@@ -9,6 +9,7 @@
 #include <string>
 
 #include "server/relay/relayed_client.h"
+#include "server/relay/relayed_request.h"
 
 namespace vat {
 
@@ -36,6 +37,9 @@ class RelayDoor {
   /// RelayedClient::join().
   std::shared_ptr<RelayedClient> open(std::shared_ptr<ClientOutbox> outbox,
                                       const std::string& session, const Owner& owner);
+  /// Returns a request to the owner of the session. The next call must be RelayedRequest::send().
+  std::shared_ptr<RelayedRequest> open_request(const std::string& session, const Owner& owner,
+                                               RelayedRequest::NoteResult note_result);
   /// Returns whether the owner of this epoch has said that it has the session no longer.
   bool has_moved(const std::string& session, std::uint64_t epoch);
   /// Once per second, ends the links to silent or previous owners, opens other links for frames
@@ -59,7 +63,10 @@ class RelayDoor {
   void note_move(const std::string& session, std::uint64_t epoch);
   std::shared_ptr<RelayFeed> feed(const std::string& session, const Owner& owner);
   std::string next_link();
-  std::vector<std::shared_ptr<RelayedClient>> all_clients();
+  RelayPlace place_of(const std::string& link, const std::string& session,
+                      const Owner& owner) const;
+  std::unique_ptr<RelayLine> make_line(const std::string& link, const Owner& owner) const;
+  std::vector<std::shared_ptr<RelayEnd>> all_ends();
   std::vector<std::shared_ptr<RelayFeed>> all_feeds();
 
   const Place place_;
@@ -70,8 +77,8 @@ class RelayDoor {
 
   OwnedMutex mutex_;  // guards the members below
   std::uint64_t links_opened_ = 0;
-  std::map<std::string, std::weak_ptr<RelayedClient>> clients_;  // by link
-  std::map<std::string, Feed> feeds_;                            // by session
+  std::map<std::string, std::weak_ptr<RelayEnd>> ends_;  // of clients, by link
+  std::map<std::string, Feed> feeds_;                    // by session
   std::map<std::string, std::uint64_t> moved_;  // last ended epochs of sessions that have moved
   SteadyClock::time_point looked_{};
   std::unique_ptr<NatsConnection::Subscription> subscription_;

@@ -43,6 +43,7 @@ RelayHost::RelayHost(std::string node, NatsConnection& connection, Server server
       server_(std::move(server)),
       clock_(clock),
       last_id_(kFirstRelayed) {
+  boost::asio::post(thread_, [] { pthread_setname_np(pthread_self(), "vat-relay"); });
   subscription_ =
       connection_.subscribe(RelayDoor::owner_subject(node_), [this](const NatsMessage& message) {
         boost::asio::post(thread_, [this, bytes = message.data] { receive(bytes); });

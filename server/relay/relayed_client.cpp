@@ -11,12 +11,9 @@
 namespace vat {
 namespace {
 
-constexpr const char* kEnterId = "vat.enter";
 constexpr const char* kJoinId = "vat.join";
 constexpr const char* kLeaveId = "vat.leave";
 constexpr std::string_view kEventStart = R"({"jsonrpc":"2.0","method":")";
-constexpr std::chrono::seconds kQuestionInterval(4);
-constexpr std::chrono::seconds kOwnerSilence(10);
 // Close codes of PROTOCOL.md that a client answers by joining again.
 constexpr std::uint16_t kGoingAway = 1001;
 constexpr std::uint16_t kNotOwner = 4012;
@@ -39,34 +36,11 @@ std::uint32_t epoch_of(std::string_view description) {
   return epoch;
 }
 
-std::string write_request(const char* id, const char* method, const Json& params) {
-  return Json{{"jsonrpc", "2.0"}, {"id", id}, {"method", method}, {"params", params}}.dump();
-}
-
-/// Returns the error of a reply of another node.
-RpcError read_error(const Json& error) {
-  Json data = error.at("data");
-  const auto name = data.at("kind").get<std::string>();
-  data.erase("kind");
-  data.erase("hint");
-  for (const ErrorRow& row : error_rows()) {
-    if (row.name == name) return {row.kind, error.at("message"), std::move(data)};
-  }
-  return internal_error();
-}
-
-Role read_role(const Json& name) {
-  for (const Role role : {Role::viewer, Role::controller, Role::owner, Role::admin}) {
-    if (name == to_string(role)) return role;
-  }
-  return Role::none;
-}
-
 }  // namespace
 
-RelayedClient::RelayedClient(Place place, std::unique_ptr<RelayLine> line,
+RelayedClient::RelayedClient(RelayPlace place, std::unique_ptr<RelayLine> line,
                              std::shared_ptr<ClientOutbox> outbox, Links links, const Clock& clock)
-    : place_(std::move(place)),
+    : RelayEnd(std::move(place)),
       line_(std::move(line)),
       outbox_(std::move(outbox)),
       links_(std::move(links)),
@@ -79,38 +53,36 @@ RelayedClient::~RelayedClient() {
   abandon();
 }
 
-void RelayedClient::join(PendingReply reply, Entry entry, const Json& params) {
-  const Grant& access = entry.access;
-  const Json open{{"subject", place_.subject},
-                  {"address", outbox_->address()},
-                  {"is_open", entry.is_open},
-                  {"access",
-                   {{"role", static_cast<int>(access.role)},
-                    {"session", access.session},
-                    {"is_invitation", access.is_invitation}}}};
-  const std::string token = entry.token;
+void RelayedClient::join(PendingReply reply, RelayEntry entry, const Json& params) {
   {
     const std::lock_guard lock(mutex_);
     joining_ = std::move(reply);
-    is_entering_ = !token.empty();
-    entry_ = std::move(entry);
+    tokens_shown_ = entry.token.empty() ? 0 : 1;
+    granted_ = entry.granted;
   }
-  send(RelayKind::open, open, {});
-  if (!token.empty()) {
-    send(RelayKind::text, Json::object(),
-         write_request(kEnterId, "access.enter", {{"token", token}}));
-  }
-  send(RelayKind::text, Json::object(), write_request(kJoinId, "session.join", params));
+  if (!send_entry(*line_, place(), outbox_->address(), entry)) return fail();
+  send(RelayKind::text, Json::object(), write_owner_request(kJoinId, "session.join", params));
 }
 
-bool RelayedClient::forward(std::string_view message, bool wants_reply) {
+bool RelayedClient::forward(std::string_view message, const std::optional<Json>& id,
+                            NoteResult note_result) {
   {
     const std::lock_guard lock(mutex_);
     if (state_ == State::left || state_ == State::closed) return false;
-    replies_due_ += wants_reply ? 1 : 0;
+    replies_due_ += id ? 1 : 0;
+    if (id && note_result) noted_.emplace_back(*id, std::move(note_result));
   }
   send(RelayKind::text, Json::object(), std::string(message));
   return true;
+}
+
+void RelayedClient::enter(const std::string& token) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (state_ == State::left || state_ == State::closed) return;
+    ++tokens_shown_;
+  }
+  send(RelayKind::text, Json::object(), write_enter(token));
 }
 
 void RelayedClient::send(RelayKind kind, Json fields, std::string body) {
@@ -138,7 +110,7 @@ void RelayedClient::leave(PendingReply reply) {
     }
     self->end();
     self->send(RelayKind::text, Json::object(),
-               write_request(kLeaveId, "session.leave", Json::object()));
+               write_owner_request(kLeaveId, "session.leave", Json::object()));
   });
 }
 
@@ -233,14 +205,14 @@ void RelayedClient::start_epoch(std::uint32_t epoch) {
 bool RelayedClient::receive_reply(const std::string& text) {
   {
     const std::lock_guard lock(mutex_);
-    if (!joining_ && !leaving_ && !is_entering_) return false;
+    if (!joining_ && !leaving_ && tokens_shown_ == 0 && noted_.empty()) return false;
   }
-  const Json message = Json::parse(text);
+  Json message = Json::parse(text);
   const Json& id = message.at("id");
   const auto keep = shared_from_this();
   std::unique_lock lock(mutex_);
-  if (id == kEnterId && is_entering_) {  // may follow the reply to the join
-    is_entering_ = false;
+  if (id == kEnterId && tokens_shown_ > 0) {  // may follow the reply to the join
+    --tokens_shown_;
     lock.unlock();
     finish_enter(message);
   } else if (id == kJoinId && joining_) {
@@ -252,22 +224,40 @@ bool RelayedClient::receive_reply(const std::string& text) {
     keeper_.reset();
     line_->send(RelayKind::end);
   } else {
-    return false;
+    lock.unlock();
+    return note_result(message);
   }
+  return true;
+}
+
+bool RelayedClient::note_result(Json& message) {
+  NoteResult note;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found =
+        std::ranges::find(noted_, message.at("id"), &std::pair<Json, NoteResult>::first);
+    if (found == noted_.end()) return false;
+    note = std::move(found->second);
+    noted_.erase(found);
+  }
+  const auto result = message.find("result");
+  if (result == message.end()) return false;
+  note(*result);
+  outbox_->send(to_message_text(message));
+  count_reply();
   return true;
 }
 
 void RelayedClient::finish_enter(const Json& message) {
   if (const auto error = message.find("error"); error != message.end()) {
-    return fail_join(read_error(*error));
+    return fail_join(read_owner_error(*error));
   }
-  const Json& result = message.at("result");
   std::function<void(const Grant&)> granted;
   {
     const std::lock_guard lock(mutex_);
-    granted = entry_.granted;
+    granted = granted_;
   }
-  if (granted) granted({read_role(result.at("role")), result.value("session", ""), true});
+  if (granted) granted(read_granted(message.at("result")));
 }
 
 void RelayedClient::fail_join(RpcError error) {
@@ -287,10 +277,10 @@ void RelayedClient::fail_join(RpcError error) {
 
 void RelayedClient::finish_join(const Json& message) {
   if (const auto error = message.find("error"); error != message.end()) {
-    RpcError answer = read_error(*error);
+    RpcError answer = read_owner_error(*error);
     if (answer.kind == ErrorKind::moved) {
       links_.note_move();
-      answer = moved_to(place_.session, place_.own_url);
+      answer = moved_to(place().session, place().own_url);
     }
     return fail_join(std::move(answer));
   }
@@ -301,7 +291,7 @@ void RelayedClient::finish_join(const Json& message) {
     if (state_ != State::joining || !joining_) return;
     state_ = State::joined;
     joined_tick_ = result.at("tick");
-    outbox_->set_role(membership_, read_role(result.at("role")));
+    outbox_->set_role(membership_, read_owner_role(result.at("role")));
     outbox_->start_epoch(membership_, result.at("description").at("epoch"));
     joining_->answer(result);
     joining_.reset();
@@ -378,7 +368,7 @@ void RelayedClient::fail() {
   line_->send(RelayKind::end);
   if (state == State::closed) return;
   // Without a URL: the client joins again on this connection.
-  outbox_->send(write_event("session.moved", {{"session", place_.session}, {"url", ""}}));
+  outbox_->send(write_event("session.moved", {{"session", place().session}, {"url", ""}}));
 }
 
 void RelayedClient::look() {
@@ -393,7 +383,7 @@ void RelayedClient::look() {
     if (asks) asked_ = now;
   }
   if (is_silent) return fail();
-  if (asks) send(RelayKind::alive, {{"subject", place_.subject}}, {});
+  if (asks) send(RelayKind::alive, {{"subject", place().subject}}, {});
 }
 
 }  // namespace vat

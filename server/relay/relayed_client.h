@@ -8,52 +8,39 @@
 #include <string_view>
 #include <vector>
 
-#include "server/access/access.h"
 #include "server/clients/pending_reply.h"
+#include "server/relay/relay_end.h"
 #include "server/relay/relay_feed.h"
 
 namespace vat {
 
 /// Client of this node in a session of another node. The owner serves the client as its own, with
 /// all messages except those of frames. Thread-safe.
-class RelayedClient : public std::enable_shared_from_this<RelayedClient> {
+class RelayedClient final : public RelayEnd, public std::enable_shared_from_this<RelayedClient> {
  public:
-  struct Place {
-    std::string session;
-    std::string owner;        ///< name of the node
-    std::uint64_t epoch = 0;  ///< of the owner
-    std::string own_url;      ///< URL of this node
-    std::string subject;      ///< subject of the messages to this node's clients
-  };
   /// Functions of the node. They must not wait for the client.
   struct Links {
     std::function<std::shared_ptr<RelayFeed>()> feed;  ///< of the session; its clients share it
     std::function<void()> note_move;  ///< called if the owner has the session no longer
   };
-  /// Access of a client that joins by a relay.
-  struct Entry {
-    Grant access;
-    bool is_open = false;  ///< this node requires no token
-    /// Token that the client shows to the owner first; empty: none.
-    std::string token;
-    /// Called with the access that the owner grants for the token.
-    std::function<void(const Grant&)> granted;
-  };
+  /// Called with the result of a forwarded request before the client receives it, and may change
+  /// it.
+  using NoteResult = std::function<void(Json& result)>;
   /// Starts a membership of the outbox.
-  RelayedClient(Place place, std::unique_ptr<RelayLine> line, std::shared_ptr<ClientOutbox> outbox,
-                Links links, const Clock& clock);
-  ~RelayedClient();
-  RelayedClient(const RelayedClient&) = delete;
-  RelayedClient& operator=(const RelayedClient&) = delete;
+  RelayedClient(RelayPlace place, std::unique_ptr<RelayLine> line,
+                std::shared_ptr<ClientOutbox> outbox, Links links, const Clock& clock);
+  ~RelayedClient() override;
 
-  const Place& place() const { return place_; }
   /// Returns whether the membership has ended: by a call, a message of the owner, or a failure.
   bool has_left() const;
   /// Opens the link and joins the session. `params` are those of session.join. Call it once.
-  void join(PendingReply reply, Entry entry, const Json& params);
-  /// Sends a message of the client to the owner, whose reply the client receives. Returns false if
-  /// the client has left.
-  bool forward(std::string_view message, bool wants_reply);
+  void join(PendingReply reply, RelayEntry entry, const Json& params);
+  /// Sends a message of the client to the owner, whose reply the client receives. `id` is the id of
+  /// a request, and `note_result` may be empty. Returns false if the client has left.
+  bool forward(std::string_view message, const std::optional<Json>& id,
+               NoteResult note_result = {});
+  /// Shows a token to the owner, which gives the client the token's access.
+  void enter(const std::string& token);
   /// Leaves the session after the join is answered.
   void leave(PendingReply reply);
   /// Start or end the frames. They answer after the answer of join().
@@ -65,12 +52,10 @@ class RelayedClient : public std::enable_shared_from_this<RelayedClient> {
   /// calls of this and of other functions have no effect on the outbox.
   void abandon();
 
-  /// Takes a message of the owner.
-  void receive(RelayMessage message);
+  void receive(RelayMessage message) override;
   /// Ends the membership, because the owner cannot be reached. The client is told to join again.
-  void fail();
-  /// Fails if the owner is silent. Call it about once per second.
-  void look();
+  void fail() override;
+  void look() override;
 
  private:
   enum class State {
@@ -88,6 +73,8 @@ class RelayedClient : public std::enable_shared_from_this<RelayedClient> {
   void start_epoch(std::uint32_t epoch);
   /// Answers a request of this object, if the message is its reply. Returns false otherwise.
   bool receive_reply(const std::string& text);
+  /// Notes the result of a forwarded request, if a function waits for it.
+  bool note_result(Json& message);
   void finish_enter(const Json& message);
   void finish_join(const Json& message);
   void fail_join(RpcError error);
@@ -98,7 +85,6 @@ class RelayedClient : public std::enable_shared_from_this<RelayedClient> {
   void count_reply();
   std::uint64_t tick_locked() const;
 
-  const Place place_;
   const std::unique_ptr<RelayLine> line_;
   const std::shared_ptr<ClientOutbox> outbox_;
   const Links links_;
@@ -110,15 +96,16 @@ class RelayedClient : public std::enable_shared_from_this<RelayedClient> {
   RelayInput received_;
   SteadyClock::time_point heard_;
   SteadyClock::time_point asked_;
-  Entry entry_;
-  bool is_entering_ = false;  // the owner has not answered the token
+  std::function<void(const Grant&)> granted_;  // of the entry
+  std::size_t tokens_shown_ = 0;               // that the owner has not answered
   std::optional<PendingReply> joining_;
   std::optional<PendingReply> leaving_;
   std::vector<Task> when_joined_;
   std::shared_ptr<RelayFeed> feed_;  // null: no subscription
   std::uint64_t joined_tick_ = 0;
-  std::size_t replies_due_ = 0;            // to forwarded requests
-  std::shared_ptr<RelayedClient> keeper_;  // this client, while it waits for replies
+  std::size_t replies_due_ = 0;                     // to forwarded requests
+  std::vector<std::pair<Json, NoteResult>> noted_;  // requests whose results are noted, by id
+  std::shared_ptr<RelayedClient> keeper_;           // this client, while it waits for replies
 };
 
 }  // namespace vat

@@ -8,6 +8,7 @@
 #include "protocol/json/printable.h"
 #include "server/people/person_name.h"
 #include "server/replay/foreign_text.h"
+#include "server/replay/log_replay.h"
 #include "server/session/core/saved_state.h"
 #include "server/session/core/scene_loading.h"
 #include "server/support/log.h"

@@ -25,15 +25,25 @@ bool controls_frames(std::string_view method) {
   return method == "frames.subscribe" || method == "frames.unsubscribe";
 }
 
+/// Returns whether the parameters of the method name a session whose node answers.
+bool names_session(const MethodRow& row) {
+  return row.role_source == RoleSource::named || row.name == "server.move";
+}
+
 /// Returns whether the node of the client's session answers the request, and not this node.
 bool is_for_owner(const RpcRequest& request, const std::string& session) {
-  if (request.method == "session.close" || request.method == "access.ticket") {
+  const Method* method = find_method(request.method);
+  if (method == nullptr) return false;
+  const MethodRow& row = method->row;
+  if (row.role_source == RoleSource::named) {
     const auto named = request.params.find("session");
     return named != request.params.end() && *named == session;
   }
-  const Method* method = find_method(request.method);
-  return method != nullptr && std::holds_alternative<SessionHandler>(method->handler) &&
-         !controls_frames(request.method);
+  // Scenes are saved on the node of the session.
+  const bool concerns_scenes =
+      row.name == "scene.list" || row.name == "scene.levels" || row.name == "scene.delete";
+  const bool is_of_session = std::holds_alternative<SessionHandler>(method->handler);
+  return concerns_scenes || (is_of_session && !controls_frames(row.name));
 }
 
 RpcError unknown_method(std::string_view name) {
@@ -62,11 +72,7 @@ void Dispatcher::receive(const SessionDirectory::Sender& sender, std::string_vie
       client.send(write_reply(id.value_or(nullptr), std::move(*error)));
       return;
     }
-    if (sender.relay != nullptr &&
-        is_for_owner(std::get<RpcRequest>(request), sender.relay->place().session) &&
-        sender.relay->forward(message, id.has_value())) {
-      return;
-    }
+    if (forward(sender, std::get<RpcRequest>(request), id, message)) return;
     PendingReply reply(sender.outbox, id, &directory_.resources().metrics);
     if (!id) reply.set_notification(std::get<RpcRequest>(request).method);
     if (auto result =
@@ -80,6 +86,16 @@ void Dispatcher::receive(const SessionDirectory::Sender& sender, std::string_vie
     log_error("a message failed: {}", error.what());
     client.send(write_reply(id.value_or(nullptr), internal_error()));
   }
+}
+
+bool Dispatcher::forward(const SessionDirectory::Sender& sender, const RpcRequest& request,
+                         const std::optional<Json>& id, std::string_view message) {
+  if (sender.relay == nullptr || !is_for_owner(request, sender.relay->place().session)) {
+    return false;
+  }
+  RelayedClient::NoteResult note;
+  if (request.method == "replay.open") note = directory_.note_replay_of(sender.outbox->id());
+  return sender.relay->forward(message, id, std::move(note));
 }
 
 void Dispatcher::receive_binary(ClientOutbox& client, std::size_t bytes) {
@@ -164,6 +180,8 @@ std::optional<RpcResult> Dispatcher::call(PendingReply& reply,
     if (row.role_source == RoleSource::connection) {
       if (auto error = refuse_role(row, role)) return *std::move(error);
     }
+    if (names_session(row) && directory_.ask_owner(reply, request)) return {};
+    if (row.name == "session.create" && directory_.create_at_owner(reply, request)) return {};
     Errors errors;
     ObjectReader params(request.params, "", errors);
     const ServerAction action = (*handler)(params, errors);

@@ -27,6 +27,10 @@ class Dispatcher {
   /// exceed rates. `method` is empty if the message was not read.
   void refuse(ClientOutbox& client, const std::optional<Json>& id, std::string_view method,
               const RateExcess& excess);
+  /// Sends a message to the owner of the client's session, if the owner answers it and is another
+  /// node. Returns false otherwise.
+  bool forward(const SessionDirectory::Sender& sender, const RpcRequest& request,
+               const std::optional<Json>& id, std::string_view message);
   std::variant<RpcRequest, RpcError> read(std::string_view message, Role role,
                                           std::optional<Json>& id) const;
   /// Refuses a method that needs memory if the process exceeds its limit.

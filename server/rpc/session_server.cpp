@@ -4,6 +4,7 @@
 #include <memory>
 #include <utility>
 
+#include "server/relay/relay_downloads.h"
 #include "server/relay/relay_host.h"
 #include "server/rpc/dispatcher.h"
 #include "server/rpc/method_table.h"
@@ -33,12 +34,14 @@ Errors to_errors(const RpcError& error) {
 struct SessionServer::Parts {
   SessionDirectory directory;
   Dispatcher dispatcher{directory};
-  std::shared_ptr<RelayHost> relay;  // null: this server is no node of a cluster
+  std::shared_ptr<RelayHost> relay;                 // null: this server is no node of a cluster
+  std::unique_ptr<RelayDownloads> relay_downloads;  // null: as above
 };
 
 SessionServer::SessionServer(const Catalogue& catalogue, ServerSettings settings, Clock& clock)
     : parts_(new Parts{.directory{catalogue, std::move(settings), clock, session_methods()},
-                       .relay = nullptr}) {
+                       .relay = nullptr,
+                       .relay_downloads = nullptr}) {
   SessionDirectory& directory = parts_->directory;
   ClusterNode* const cluster = directory.resources().cluster.get();
   if (cluster == nullptr) return;
@@ -57,6 +60,8 @@ SessionServer::SessionServer(const Catalogue& catalogue, ServerSettings settings
       *cluster};
   parts_->relay = std::make_shared<RelayHost>(cluster->name(), cluster->relay_connection(),
                                               std::move(server), clock);
+  parts_->relay_downloads = std::make_unique<RelayDownloads>(
+      cluster->name(), cluster->relay_connection(), directory.resources().downloads, clock);
   directory.on_cluster_change([weak = std::weak_ptr(parts_->relay), cluster] {
     const auto relay = weak.lock();
     if (relay == nullptr) return;
@@ -112,6 +117,19 @@ void SessionServer::flush() {
 
 Downloads& SessionServer::downloads() {
   return parts_->directory.resources().downloads;
+}
+
+HttpHandler SessionServer::serve_downloads(HttpHandler site) {
+  RelayDownloads* const others = parts_->relay_downloads.get();
+  FetchDownload fetch;
+  if (others != nullptr) {
+    fetch = [others](const std::string& node, const std::string& path,
+                     std::function<void(HttpResponse)> answer) {
+      others->fetch(node, path, std::move(answer));
+    };
+  }
+  return with_downloads(std::move(site), downloads(), parts_->directory.resources().clock,
+                        std::move(fetch));
 }
 
 void SessionServer::count_refusal(std::string_view limit) {

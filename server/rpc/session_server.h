@@ -51,6 +51,9 @@ class SessionServer : public ConnectionHandler {
 
   /// Returns the files that clients can download by HTTP.
   Downloads& downloads();
+  /// Returns a handler for the downloads of this node and of the other nodes of its cluster. The
+  /// handler passes other requests to `site`.
+  HttpHandler serve_downloads(HttpHandler site);
 
   /// Waits for all work posted before the call: creations of sessions, turns, their frames, and
   /// writes to the data folder.

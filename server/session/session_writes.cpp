@@ -65,7 +65,7 @@ void Session::resume_turns() {
 void Session::store_settings(PendingReply reply, SessionSettings settings) {
   const auto waiting = std::make_shared<PendingReply>(std::move(reply));
   const auto apply = [this, waiting, settings](std::optional<StorageError::Kind> refused) {
-    if (refused == StorageError::Kind::locked) return waiting->answer(name_in_use());
+    if (refused == StorageError::Kind::name_used) return waiting->answer(name_in_use());
     const Failure failure = core_->history().note_write(refused);
     if (failure) return waiting->answer(*failure);
     core_->people().configure(settings);

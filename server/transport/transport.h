@@ -63,6 +63,9 @@ struct HttpResponse {
   std::string content_type;  ///< header Content-Type
   std::string body;
   std::vector<std::pair<std::string, std::string>> headers;  ///< other headers: name, value
+  /// If set, the response follows, and the other members have no effect. The transport calls the
+  /// function once, with a function for the response that any thread may call once.
+  std::function<void(std::function<void(HttpResponse)>)> later{};
 };
 
 /// Function that returns the response to an HTTP request. Several transport threads may call the

@@ -142,6 +142,7 @@ void WsEndpoint::run() {
 
 /// Closes connections whose closing handshake did not end in time.
 void WsEndpoint::forget_all() {
+  awaiting_response_.clear();
   for (const StreamPtr& left : open_streams()) {
     guarded("close", [&] { closed(*left); });
   }

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <thread>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -95,6 +96,8 @@ class WsEndpoint {
   std::optional<HttpRefusal> refuse_request(WsStream& stream);
   bool validate(WsStream& stream);
   void answer_http(const StreamPtr& stream);
+  void answer_later(const StreamPtr& stream, const HttpResponse& response);
+  void send_response(const StreamPtr& stream, const HttpResponse& response);
   void add_strict_transport(WsStream& stream) const;
   bool may_keep(const WsStream& stream) const;
   void continue_with_next(WsStream& answered);
@@ -121,6 +124,8 @@ class WsEndpoint {
 
   // Members that only the endpoint's thread uses while it runs.
   std::unordered_map<ConnectionId, std::weak_ptr<WsStream>> open_;
+  /// Requests whose responses follow. The library keeps no reference to a stream without work.
+  std::unordered_set<StreamPtr> awaiting_response_;
   bool stopping_ = false;
 };
 

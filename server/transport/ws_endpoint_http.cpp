@@ -90,9 +90,10 @@ void WsEndpoint::answer_http(const StreamPtr& stream) {
   stream->defer_http_response();
   stream->response_deadline.emplace(io_, kResponseTimeout);
   stream->response_deadline->async_wait(
-      [handle = std::weak_ptr<WsStream>(stream)](boost::system::error_code error) {
+      [this, handle = std::weak_ptr<WsStream>(stream)](boost::system::error_code error) {
         if (error) return;
         if (const auto slow = handle.lock()) {
+          awaiting_response_.erase(slow);
           slow->terminate(make_error_code(websocketpp::transport::error::timeout));
         }
       });
@@ -100,6 +101,26 @@ void WsEndpoint::answer_http(const StreamPtr& stream) {
   const HttpResponse response =
       refusal ? HttpResponse{refusal->status, kPlainText, refusal->message, {}}
               : ask_http_handler(*stream);
+  if (response.later) return answer_later(stream, response);
+  send_response(stream, response);
+}
+
+/// Sends a response that follows, unless the peer or the endpoint has ended before.
+void WsEndpoint::answer_later(const StreamPtr& stream, const HttpResponse& response) {
+  awaiting_response_.insert(stream);
+  const auto send = [this](const StreamPtr& answered, const HttpResponse& follows) {
+    if (awaiting_response_.erase(answered) == 0) return;  // the deadline has passed
+    guarded("http", [&] { send_response(answered, follows); });
+  };
+  response.later([send, tasks = tasks_, handle = std::weak_ptr<WsStream>(stream)](
+                     HttpResponse follows) {  // the queue drops the task after the endpoint's end
+    tasks->run(handle, [send, follows = std::move(follows)](const StreamPtr& answered) {
+      send(answered, follows);
+    });
+  });
+}
+
+void WsEndpoint::send_response(const StreamPtr& stream, const HttpResponse& response) {
   set_status(*stream, response.status);
   if (stream->get_request().get_method() != "HEAD") stream->set_body(response.body);
   for (const auto& [name, value] : response.headers) stream->replace_header(name, value);

@@ -23,11 +23,16 @@ std::string fit_reason(const std::string& reason) {
 }  // namespace
 
 void WsTaskQueue::send(std::weak_ptr<WsStream> stream, WsMessage::ptr message) {
-  put({std::move(stream), std::move(message), 0, {}});
+  put({std::move(stream), std::move(message), 0, {}, {}});
 }
 
 void WsTaskQueue::close(std::weak_ptr<WsStream> stream, std::uint16_t code, std::string reason) {
-  put({std::move(stream), nullptr, code, std::move(reason)});
+  put({std::move(stream), nullptr, code, std::move(reason), {}});
+}
+
+void WsTaskQueue::run(std::weak_ptr<WsStream> stream,
+                      std::function<void(const std::shared_ptr<WsStream>&)> work) {
+  put({std::move(stream), nullptr, 0, {}, std::move(work)});
 }
 
 void WsTaskQueue::shut() {
@@ -60,6 +65,8 @@ void WsTaskQueue::run_all() {
     if (task.message) {
       // A closed stream refuses the message, which is then dropped.
       stream->send(std::move(task.message));
+    } else if (task.work) {
+      task.work(stream);
     } else {
       close_stream(*stream, task.code, task.reason);
     }

@@ -5,6 +5,7 @@
 #include "server/cli/common/command.h"
 #include "tests/bench/accuracy/accuracy.h"
 #include "tests/bench/cluster/cluster.h"
+#include "tests/bench/cluster/relay_messages.h"
 #include "tests/bench/cluster/relays.h"
 #include "tests/bench/cluster/scale.h"
 #include "tests/bench/codec/codec.h"
@@ -51,6 +52,7 @@ int run_command(int argc, char** argv) {
   add_recovery_command(app, exit_code);
   add_cluster_command(app, exit_code);
   add_relays_command(app, exit_code);
+  add_relay_messages_command(app, exit_code);
   add_scale_command(app, exit_code);
   add_output_command(app, exit_code);
   add_race_command(app, exit_code);

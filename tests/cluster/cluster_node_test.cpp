@@ -50,7 +50,7 @@ class CountedLines {
 class EmptyHost final : public ClusterHost {
  public:
   void start_taken(const StoredSession&) override {}
-  void end_lost(std::uint64_t, const std::string&) override {}
+  void end_lost(std::uint64_t, const std::string&, std::function<void()> done) override { done(); }
   bool stop_for_move(std::uint64_t, std::function<void()>) override { return false; }
   void create_for(const std::string&, std::function<void(const std::string&)>) override {}
   void cluster_changed() override {}

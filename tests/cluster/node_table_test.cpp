@@ -23,6 +23,18 @@ TEST(NodeTableTest, ANodeIsReadAsItWasWritten) {
   EXPECT_EQ(read->url, "ws://a/ws");
   EXPECT_EQ(read->room, 2.5);
   EXPECT_TRUE(read->accepts);
+  EXPECT_TRUE(read->replays.empty());
+  NodeInfo with_replays = make_node("a");
+  with_replays.replays = {{(1ULL << 62) + 3, "the tide"}, {(1ULL << 62) + 4, "no UTF-8: \xff"}};
+  const auto again = read_node("a", write_node(with_replays));
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->replays.at((1ULL << 62) + 3), "the tide");
+  EXPECT_EQ(again->replays.size(), 2U);
+  EXPECT_FALSE(read_node("a", R"({"node":"a","instance":"1","url":"","instruction_set":"",)"
+                              R"("version":"","room":1,"accepts":true,"replays":[{}]})"));
+  EXPECT_TRUE(read_node("a", R"({"node":"a","instance":"1","url":"","instruction_set":"",)"
+                             R"("version":"","room":1,"accepts":true})"))
+      << "of an earlier version";
   EXPECT_FALSE(read_node("a", "{}"));
   EXPECT_FALSE(read_node("b", write_node(make_node("a"))));
   EXPECT_FALSE(read_node("a", "no JSON"));

@@ -53,10 +53,10 @@ TEST_F(SessionLocatorTest, OneOfTwoNodesTakesASession) {
 
 TEST_F(SessionLocatorTest, NumbersAndNamesAreUnique) {
   const LocatedSession first = locator.create(make(locator, "pool"));
-  EXPECT_TRUE(conflicts([&] { locator.create(make(locator, "pool")); }));
+  EXPECT_THROW(locator.create(make(locator, "pool")), NameInUse);
   const LocatedSession other = locator.create(make(locator, "lake"));
   EXPECT_GT(other.number, first.number);
-  EXPECT_TRUE(conflicts([&] { locator.rename(other, "pool"); }));
+  EXPECT_THROW(locator.rename(other, "pool"), NameInUse);
   const LocatedSession renamed = locator.rename(first, "sea");
   locator.rename(other, "pool");
   locator.remove(renamed);
@@ -69,7 +69,14 @@ TEST_F(SessionLocatorTest, NumbersAndNamesAreUnique) {
 TEST_F(SessionLocatorTest, ANameCanBeTakenAgainAfterAFailedRename) {
   const LocatedSession old = locator.create(make(locator, "pool"));
   const LocatedSession renewed = locator.renew(old);
-  EXPECT_TRUE(conflicts([&] { locator.rename(old, "sea"); }));  // has taken the name
+  try {
+    locator.rename(old, "sea");  // takes the name, and then finds another entry
+    ADD_FAILURE();
+  } catch (const NameInUse&) {
+    ADD_FAILURE() << "the name is not that of another session";
+  } catch (const NatsError& error) {
+    EXPECT_EQ(error.kind(), NatsError::Kind::conflict);
+  }
   EXPECT_EQ(locator.rename(renewed, "sea").name, "sea");
 }
 

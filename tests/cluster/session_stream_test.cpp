@@ -41,7 +41,7 @@ class SessionStreamTest : public testing::Test {
     place.session = kSession;
     return std::make_shared<SessionStream>(
         streams, lease, clock, threads.get_executor(), std::move(place), [this] { ++lost; },
-        [](const std::string&) {});
+        [this](const std::string& name) { rename(name); });
   }
   std::shared_ptr<SessionStream> create() {
     SessionStream::Place place;
@@ -94,6 +94,7 @@ class SessionStreamTest : public testing::Test {
   boost::asio::thread_pool threads{2};
   ClusterStreams streams{connection};
   std::atomic<int> lost = 0;
+  std::function<void(const std::string& name)> rename = [](const std::string&) {};
 };
 
 TEST_F(SessionStreamTest, AnotherNodeReadsWhatWasStored) {
@@ -141,6 +142,21 @@ TEST_F(SessionStreamTest, AMessageBeforeATakeOverCountsAsStored) {
   EXPECT_EQ(append(*old, {make_entry(1)}), Failure());
   EXPECT_EQ(append(*old, {make_entry(2)}), StorageError::Kind::unreachable);
   EXPECT_THAT(sequences_of(take(3)), ElementsAre(1));
+}
+
+TEST_F(SessionStreamTest, AFailedRenamingHasItsReason) {
+  const auto stream = create();
+  const auto configure = [&] {
+    return wait([&](Journal::Done done) { stream->configure("sea", "{}", std::move(done)); });
+  };
+  ASSERT_EQ(configure(), Failure());
+  rename = [](const std::string& name) { throw NameInUse(name); };
+  EXPECT_EQ(configure(), StorageError::Kind::name_used);
+  for (const auto kind : {NatsError::Kind::conflict, NatsError::Kind::unreachable}) {
+    rename = [kind](const std::string&) { throw NatsError(kind, "the session has moved"); };
+    EXPECT_EQ(configure(), StorageError::Kind::unreachable) << static_cast<int>(kind);
+  }
+  EXPECT_EQ(take(2).stored.name, "sea");
 }
 
 TEST_F(SessionStreamTest, AFlushWaitsForTheProgress) {

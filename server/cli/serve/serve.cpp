@@ -206,16 +206,14 @@ int serve(const ServeSettings& options, const ServeAccess& access, const Catalog
 
   const auto transport = make_websocket_transport(
       transport_settings(options, sessions), sessions,
-      with_downloads(
-          make_http_site(
-              std::move(viewer),
-              {[&] { return sessions.metrics(); }, [&] { return sessions.slow_ticks(); },
-               [&](std::string_view authorization) {
-                 return may_read_metrics(settings.access, authorization);
-               },
-               [&] { return phase_of(phase, sessions); }, [&] { return sessions.health(); },
-               version_json(settings), options.allow_origin}),
-          sessions.downloads(), clock));
+      sessions.serve_downloads(make_http_site(
+          std::move(viewer),
+          {[&] { return sessions.metrics(); }, [&] { return sessions.slow_ticks(); },
+           [&](std::string_view authorization) {
+             return may_read_metrics(settings.access, authorization);
+           },
+           [&] { return phase_of(phase, sessions); }, [&] { return sessions.health(); },
+           version_json(settings), options.allow_origin})));
   raise_file_limit(settings.limits.max_connections);
   std::optional<CertificateWatch> certificate_watch;
   if (!options.tls_certificate.empty()) {

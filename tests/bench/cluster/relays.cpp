@@ -1,23 +1,22 @@
 #include "tests/bench/cluster/relays.h"
 
 #include <chrono>
-#include <exception>
 #include <filesystem>
 #include <iostream>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "server/cli/common/command.h"
 #include "server/cli/serve/open_files.h"
+#include "tests/bench/cluster/relayed_service.h"
 #include "tests/bench/fanout/case.h"
 #include "tests/bench/fanout/fanout.h"
 #include "tests/bench/fanout/load.h"
-#include "tests/bench/fanout/served.h"
 #include "tests/bench/report/table.h"
 #include "tests/bench/speed/machine.h"
-#include "tests/cluster/nats_servers.h"
 
 namespace vat::bench {
 namespace {
@@ -30,53 +29,8 @@ struct RelaysOptions {
   std::string output = VAT_SOURCE_DIR "/build/bench/relays";
 };
 
-constexpr std::size_t kRelays = 2;
 constexpr std::size_t kOpenFiles = 64;  // besides sockets
 constexpr auto kSettlingTime = std::chrono::seconds(3);
-
-/// An owner of one session, and two relays, as processes on this machine.
-class RelayedService {
- public:
-  RelayedService(const RelaysOptions& options, const std::filesystem::path& folder,
-                 const std::string& scene, std::size_t viewers) {
-    // The first process creates the session.
-    for (const char* const name : {"owner", "relay1", "relay2"}) {
-      const std::string most = std::to_string(viewers + 100);
-      nodes_.push_back(std::make_unique<Served>(
-          options.program, std::vector<std::string>{"--cluster",
-                                                    nats_.urls().front(),
-                                                    "--node",
-                                                    name,
-                                                    "--public-url",
-                                                    "ws://127.0.0.1/ws",
-                                                    "--route",
-                                                    "relay",
-                                                    "--data",
-                                                    folder / name,
-                                                    "--scene",
-                                                    scene,
-                                                    "--log-level",
-                                                    "error",
-                                                    "--max-connections",
-                                                    most,
-                                                    "--max-connections-per-address",
-                                                    most,
-                                                    "--max-clients",
-                                                    most}));
-    }
-  }
-  std::uint16_t relay_port(std::size_t relay) const { return nodes_.at(1 + relay)->port(); }
-  /// Returns the processor time of the owner, of both relays, and of NATS [s].
-  std::array<double, 3> processor_seconds() const {
-    return {nodes_[0]->processor_seconds(),
-            nodes_[1]->processor_seconds() + nodes_[2]->processor_seconds(),
-            processor_seconds_of(nats_.process(0))};
-  }
-
- private:
-  test::NatsServers nats_{1};
-  std::vector<std::unique_ptr<Served>> nodes_;
-};
 
 struct RelaysRow {
   std::size_t viewers = 0;
@@ -87,14 +41,14 @@ struct RelaysRow {
 RelaysRow measure_relays(const RelaysOptions& options, const std::filesystem::path& folder,
                          const std::string& scene, std::size_t viewers) {
   std::filesystem::remove_all(folder);
-  const RelayedService service(options, folder, scene, viewers);
+  const RelayedService service(options.program, folder, scene, viewers);
   std::vector<std::unique_ptr<LoadSettings>> settings;
   std::vector<std::unique_ptr<LoadProcess>> load;
-  for (std::size_t relay = 0; relay < kRelays; ++relay) {
+  for (std::size_t relay = 0; relay < RelayedService::kRelays; ++relay) {
     settings.push_back(std::make_unique<LoadSettings>(
         LoadSettings{service.relay_port(relay), options.max_error, 0, "s1"}));
     ViewerCounts counts{};
-    counts[static_cast<std::size_t>(ViewerKind::plain)] = viewers / kRelays;
+    counts[static_cast<std::size_t>(ViewerKind::plain)] = viewers / RelayedService::kRelays;
     load.push_back(
         std::make_unique<LoadProcess>(*settings.back(), counts, static_cast<std::uint32_t>(relay)));
   }
@@ -140,21 +94,14 @@ int run_relays(const RelaysOptions& options) {
   if (const Status written = write_text(scene, kFanoutScene); !written) {
     return fail(scene, written.errors());
   }
-  std::vector<RelaysRow> rows;
-  for (const std::size_t viewers : options.viewers) {
+  const auto rows = measure_each<RelaysRow>("relays", options.viewers, [&](std::size_t viewers) {
     if (raise_open_files(viewers + kOpenFiles) < viewers + kOpenFiles) {
-      std::cerr << "relays: the system allows too few open files (ulimit -n)\n";
-      return kExitFailed;
+      throw std::runtime_error("the system allows too few open files (ulimit -n)");
     }
-    std::cout << viewers << " viewers ..." << std::endl;
-    try {
-      rows.push_back(measure_relays(options, folder / "data", scene, viewers));
-    } catch (const std::exception& error) {
-      std::cerr << "relays: " << error.what() << '\n';
-      return kExitFailed;
-    }
-  }
-  const Table table = to_relays_table(rows);
+    return measure_relays(options, folder / "data", scene, viewers);
+  });
+  if (!rows) return kExitFailed;
+  const Table table = to_relays_table(*rows);
   std::cout << '\n' << to_markdown(table);
   const Status written =
       write_table(table, options.output, "relays", "# Viewers through two relays");

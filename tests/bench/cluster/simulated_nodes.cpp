@@ -65,7 +65,10 @@ class SimulatedNode final : public ClusterHost {
   }
 
   void start_taken(const StoredSession&) override { ++taken_; }
-  void end_lost(std::uint64_t, const std::string&) override { ++lost_; }
+  void end_lost(std::uint64_t, const std::string&, std::function<void()> done) override {
+    ++lost_;
+    done();
+  }
   bool stop_for_move(std::uint64_t, std::function<void()>) override { return false; }
   void create_for(const std::string&, std::function<void(const std::string&)> answer) override {
     answer("{}");

@@ -120,11 +120,15 @@ double Served::processor_seconds() const {
 }
 
 double Served::delivery_seconds() const {
+  return seconds_of_thread("vat-frames") + seconds_of_thread("vat-network");
+}
+
+double Served::seconds_of_thread(const std::string& name) const {
   double seconds = 0;
   const std::string tasks = "/proc/" + std::to_string(process_) + "/task";
   for (const auto& task : std::filesystem::directory_iterator(tasks)) {
     const Times times = read_served_times(task.path());
-    if (times.name == "vat-frames" || times.name == "vat-network") seconds += times.seconds;
+    if (times.name == name) seconds += times.seconds;
   }
   return seconds;
 }

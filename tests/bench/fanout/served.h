@@ -35,6 +35,8 @@ class Served {
   /// send frames.
   double processor_seconds() const;
   double delivery_seconds() const;
+  /// Returns the processor time of the threads with this name.
+  double seconds_of_thread(const std::string& name) const;
   std::uint64_t resident_bytes() const;
   /// Returns the samples of /metrics by name and labels, as they are written there.
   std::map<std::string, double> metrics() const;

@@ -119,6 +119,21 @@ TEST_F(Access, AnInvitationOpensOneSessionAndNoOther) {
   EXPECT_EQ(list.at(0).at("session"), own);
 }
 
+TEST_F(Access, AnInvitationGivesItsRoleToRequestsThatNameTheSession) {
+  const auto by = owner();
+  for (const char* const role : {"viewer", "controller"}) {
+    const auto guest = enter(by->result("session.invite", {{"role", role}}).at("token"));
+    EXPECT_EQ(guest->error("session.close", {{"session", own}}).at("data").at("role"), role);
+    const Json other = guest->error("session.close", {{"session", "s1"}}).at("data");
+    EXPECT_EQ(other.at("role"), "viewer") << role;
+    const Json joined_as = guest->result("session.join");
+    by->result("participant.set_role",
+               {{"participant", joined_as.at("participant")}, {"role", "viewer"}});
+    EXPECT_EQ(guest->error("session.close", {{"session", own}}).at("data").at("role"), "viewer")
+        << "the role of the participant";
+  }
+}
+
 TEST_F(Access, InvitationsEndWithTheirSession) {
   const auto owner = this->owner();
   const std::string token = owner->result("session.invite", {{"role", "viewer"}}).at("token");

@@ -25,5 +25,18 @@ TEST(SessionRegistry, OnlyTheLastRecoveryOfASessionIsValid) {
   EXPECT_EQ(sessions.find_recovering(1, second)->name, "c");
 }
 
+TEST(SessionId, HasANumber) {
+  for (const SessionNumber number : {SessionNumber{1}, SessionNumber{77}, kFirstReplay - 1,
+                                     kFirstReplay, kFirstReplay + 3, 2 * kFirstReplay - 1}) {
+    EXPECT_EQ(number_of(to_id(number)), number) << to_id(number);
+  }
+  EXPECT_EQ(number_of("r3"), kFirstReplay + 3);
+  for (const char* const id :
+       {"", "s", "r", "3", "x3", "s3 ", "s-3", "r+3", "R3", "s3x", "s4611686018427387904",
+        "r4611686018427387904", "s99999999999999999999"}) {
+    EXPECT_FALSE(number_of(id)) << id;
+  }
+}
+
 }  // namespace
 }  // namespace vat::session_registry_test

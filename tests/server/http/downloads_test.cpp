@@ -55,6 +55,69 @@ TEST(Downloads, AreServedByTheSite) {
   EXPECT_EQ(site({"GET", late}).status, 404);
 }
 
+TEST(Downloads, AreReadInParts) {
+  Downloads downloads(10, "a");
+  const SteadyClock::time_point now{};
+  const std::string path = downloads.add({"f", "1234567"}, now).value();
+  EXPECT_TRUE(path.starts_with("/downloads/a/"));
+  EXPECT_FALSE(downloads.read(path, 8, 3, now));
+  EXPECT_FALSE(downloads.read(path + "x", 0, 3, now));
+  std::string content;
+  for (const std::size_t offset : {0U, 3U, 3U, 6U}) {  // the second part was lost once
+    const auto part = downloads.read(path, offset, 3, now);
+    ASSERT_TRUE(part);
+    EXPECT_EQ(part->name, "f");
+    EXPECT_EQ(part->size, 7U);
+    content = content.substr(0, offset) + part->content;
+  }
+  EXPECT_EQ(content, "1234567");
+  EXPECT_FALSE(downloads.read(path, 6, 3, now));
+  EXPECT_EQ(downloads.forget_old(now), 0U);
+  const std::string late = downloads.add({"f", "1"}, now).value();
+  EXPECT_FALSE(downloads.read(late, 0, 3, now + Downloads::kPatience));
+}
+
+TEST(Downloads, ReservedRoomCountsTowardsTheLimit) {
+  Downloads downloads(10);
+  const SteadyClock::time_point now{};
+  Downloads::Room room = downloads.reserve(6, now);
+  ASSERT_TRUE(room);
+  EXPECT_FALSE(downloads.reserve(5, now));
+  EXPECT_FALSE(downloads.reserve(SIZE_MAX, now));
+  EXPECT_FALSE(downloads.add({"a", "12345"}, now));
+  EXPECT_TRUE(downloads.reserve(4, now));
+  room.reset();
+  EXPECT_TRUE(downloads.add({"a", "1234567890"}, now));
+  EXPECT_FALSE(downloads.reserve(1, now));
+  EXPECT_TRUE(downloads.reserve(10, now + Downloads::kPatience));
+}
+
+TEST(Downloads, OfOtherNodesAreFetched) {
+  ManualClock clock;
+  Downloads downloads(10, "a");
+  std::string asked;
+  const HttpHandler site = with_downloads(
+      [](const HttpRequest&) {
+        return HttpResponse{404, "", "", {}};
+      },
+      downloads, clock,
+      [&](const std::string& node, const std::string& path, auto answer) {
+        asked = node + " " + path;
+        answer(download_response({"f", "text"}));
+      });
+  const HttpResponse response = site({"GET", "/downloads/b/x"});
+  ASSERT_TRUE(response.later);
+  EXPECT_EQ(asked, "");
+  HttpResponse follows;
+  response.later([&](HttpResponse answer) { follows = std::move(answer); });
+  EXPECT_EQ(asked, "b /downloads/b/x");
+  EXPECT_EQ(follows.body, "text");
+  for (const char* own : {"/downloads/a/x", "/downloads/x", "/downloads/", "/b/x"}) {
+    EXPECT_FALSE(site({"GET", own}).later) << own;
+  }
+  EXPECT_FALSE(site({"HEAD", "/downloads/b/x"}).later);
+}
+
 // Recordings that clients upload in parts.
 
 const SteadyClock::time_point kStart{};

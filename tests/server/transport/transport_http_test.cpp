@@ -1,5 +1,7 @@
 #include <gmock/gmock.h>
 
+#include <future>
+
 #include "server/transport/ws_upgrade.h"
 #include "tests/server/transport/transport_fixture.h"
 
@@ -28,6 +30,48 @@ TEST_F(TransportHttpTest, PassesOnTheHandlersAnswer) {
   EXPECT_EQ(head.status, 404);
   EXPECT_EQ(head.header("Content-Length"), "7");
   EXPECT_EQ(head.body, "");
+}
+
+TEST_F(TransportHttpTest, AResponseMayFollowFromAnotherThread) {
+  std::promise<std::function<void(HttpResponse)>> asked;
+  http_handler = [&](const HttpRequest& request) {
+    HttpResponse response{200, "text/plain", std::string(request.target), {}};
+    if (request.target != "/late") return response;
+    response.later = [&](std::function<void(HttpResponse)> answer) {
+      asked.set_value(std::move(answer));
+    };
+    return response;
+  };
+  start();
+  auto late = std::async(std::launch::async, [&] { return http(port, "GET", "/late"); });
+  const auto answer = asked.get_future().get();
+  EXPECT_EQ(http(port, "GET", "/other").body, "/other");
+  answer({201, "text/plain", "now", {{"X-Test", "yes"}}});
+  answer({500, "text/plain", "again", {}});
+  const HttpReply reply = late.get();
+  EXPECT_EQ(reply.status, 201);
+  EXPECT_EQ(reply.body, "now");
+  EXPECT_EQ(reply.header("X-Test"), "yes");
+}
+
+TEST_F(TransportHttpTest, AResponseMayFollowAfterTheEnd) {
+  std::promise<std::function<void(HttpResponse)>> asked;
+  http_handler = [&](const HttpRequest&) {
+    HttpResponse response;
+    response.later = [&](std::function<void(HttpResponse)> answer) {
+      asked.set_value(std::move(answer));
+    };
+    return response;
+  };
+  start();
+  RawClient client(port);
+  client.write("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  const auto answer = asked.get_future().get();
+  transport->stop();
+  answer({200, "text/plain", "too late", {}});
+  transport.reset();
+  answer({200, "text/plain", "too late", {}});
+  EXPECT_EQ(client.read_all(), "");
 }
 
 TEST_F(TransportHttpTest, SendsALargeBodyWhole) {

@@ -1,0 +1,194 @@
+// Methods and downloads at nodes that do not own the session.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/cluster/nodes.h"
+#include "tests/server/transport/transport_client.h"
+#include "tests/support/wait.h"
+
+namespace vat::test::any_node_test {
+namespace {
+
+constexpr const char* kSession = "s1";
+constexpr const char* kAdmin = "the admin's token of the cluster";
+
+/// Nodes with a common key, of which `owner` has the session.
+class AnyNode : public testing::Test {
+ protected:
+  AnyNode() {
+    folder.write("admin", std::string(kAdmin) + "\n");
+    folder.write("key", "a key of the cluster with sufficient length\n");
+  }
+  void start(std::size_t count, const std::string& route,
+             std::map<std::string, std::size_t> threads = {}) {
+    nodes.emplace(
+        count,
+        std::vector<std::string>{"--route", route, "--admin-token-file", folder.file("admin"),
+                                 "--cluster-key-file", folder.file("key")},
+        std::move(threads));
+    owner = nodes->owner_of(kSession, "a");
+    relay = nodes->others(owner).front();
+  }
+  WaitingClient connect(const std::string& node, const std::string& token) const {
+    WaitingClient client = nodes->connect(node);
+    client.result("access.enter", {{"token", token}});
+    return client;
+  }
+  HttpReply download(const std::string& node, const std::string& path) const {
+    const std::string url = nodes->url(node);
+    const auto end = url.rfind('/');
+    const auto begin = url.rfind(':', end) + 1;
+    return http(static_cast<std::uint16_t>(std::stoi(url.substr(begin, end - begin))), "GET", path);
+  }
+  static Json find_in_list(WaitingClient& client, const std::string& session) {
+    const Json list = client.result("session.list");
+    for (const Json& one : list.at("sessions")) {
+      if (one.at("session") == session) return one;
+    }
+    return {};
+  }
+
+  TemporaryFolder folder;
+  std::optional<Nodes> nodes;
+  std::string owner;
+  std::string relay;
+};
+
+// No client of this test has joined the session.
+TEST_F(AnyNode, RelaysRequestsThatNameASession) {
+  start(3, "relay");
+  const std::string third = nodes->others(owner).back();
+  WaitingClient admin = connect(relay, kAdmin);
+  const Json ticket = admin.result("access.ticket", {{"role", "viewer"}, {"session", kSession}});
+  WaitingClient guest = connect(third, ticket.at("token"));
+  EXPECT_EQ(guest.result("session.join").at("role"), "viewer");
+
+  WaitingClient stranger = nodes->connect(relay);
+  const Json refused = stranger.call("replay.open", {{"session", kSession}});
+  EXPECT_EQ(refused.at("error").at("data").at("kind"), "not_allowed") << refused;
+  const Json opened = admin.result("replay.open", {{"session", kSession}, {"name", "the past"}});
+  EXPECT_FALSE(opened.contains("ticket"));
+  const std::string replay = opened.at("session");
+  EXPECT_EQ(admin.result("session.join", {{"session", replay}}).at("session"), replay);
+
+  WaitingClient other = connect(third, kAdmin);
+  EXPECT_EQ(other.result("session.join", {{"session", replay}}).at("session"), replay);
+  const Json listed = find_in_list(other, replay);
+  EXPECT_EQ(listed.at("name"), "the past");
+  EXPECT_EQ(listed.at("node"), owner);
+  EXPECT_EQ(listed.at("kind"), "replay");
+  EXPECT_EQ(other.result("session.close", {{"session", replay}}).count("tick"), 1U);
+  EXPECT_EQ(admin.wait("session.closed").at("params").at("session"), replay);
+  EXPECT_EQ(other.call("session.join", {{"session", replay}}).at("error").at("data").at("kind"),
+            "no_such_session");
+
+  const Json move{{"session", kSession}, {"node", third}};
+  EXPECT_EQ(admin.result("server.move", move).at("session"), kSession);
+  EXPECT_EQ(nodes->owner_of(kSession, relay, owner), third);
+  Json closed;
+  ASSERT_TRUE(wait_until([&] {  // until the new owner has recovered the session
+    closed = admin.call("session.close", {{"session", kSession}});
+    return closed.contains("result");
+  })) << closed;
+}
+
+TEST_F(AnyNode, AParticipantAtARelayOwnsItsReplay) {
+  start(2, "relay");
+  WaitingClient client = nodes->connect(relay);
+  client.result("session.join", {{"session", kSession}});
+  const Json opened = client.result("replay.open", {{"session", kSession}});
+  EXPECT_FALSE(opened.contains("ticket"));
+  const std::string replay = opened.at("session");
+  EXPECT_EQ(client.result("session.join", {{"session", replay}}).at("role"), "owner");
+  EXPECT_TRUE(client.result("replay.seek", {{"position", opened.at("begin")}}).contains("tick"));
+  client.result("frames.subscribe");
+  const std::string token =
+      client.result("session.invite", {{"role", "viewer"}, {"uses", 1}}).at("token");
+  WaitingClient guest = connect(relay, token);
+  EXPECT_EQ(guest.result("session.join").at("session"), replay);
+  client.result("session.close", {{"session", replay}});
+  EXPECT_EQ(guest.wait("session.closed").at("params").at("session"), replay);
+}
+
+TEST_F(AnyNode, AnAdminOfAConnectionIsAnAdminAtTheOwner) {
+  start(2, "relay");
+  WaitingClient client = nodes->connect(relay);
+  client.result("session.join", {{"session", kSession}, {"role", "viewer"}});
+  EXPECT_TRUE(client.call("session.close", {{"session", kSession}}).contains("error"));
+  client.result("access.enter", {{"token", kAdmin}});
+  client.result("session.close", {{"session", kSession}});
+  EXPECT_EQ(client.wait("session.closed").at("params").at("session"), kSession);
+}
+
+TEST_F(AnyNode, ACreatorClosesItsSessionWithoutJoining) {
+  start(2, "relay", {{"a", 1}, {"b", 8}});
+  WaitingClient creator = nodes->connect("a");
+  std::string id;
+  std::string name = "lake";
+  ASSERT_TRUE(wait_until([&] {  // until the node knows the unused cores of the other one
+    name += "s";                // that of a closed session may still be in use
+    const Json reply = creator.call("session.create", {{"name", name}, {"scene", "pool"}});
+    if (!reply.contains("result")) return false;  // too many scenes per second
+    id = reply.at("result").at("session");
+    if (nodes->owner_of(id, "a") == "b") return true;
+    creator.result("session.close", {{"session", id}});
+    return false;
+  }));
+  WaitingClient stranger = nodes->connect("a");
+  EXPECT_EQ(stranger.call("session.close", {{"session", id}}).at("error").at("data").at("kind"),
+            "not_allowed");
+  creator.result("session.close", {{"session", id}});
+}
+
+TEST_F(AnyNode, ScenesOfTheOwnerAreUsedAtARelay) {
+  start(2, "relay");
+  WaitingClient client = nodes->connect(relay);
+  client.result("session.join", {{"session", kSession}});
+  const Json saved = client.result("scene.save", {{"name", "bay"}});
+  EXPECT_THAT(client.result("scene.list").dump(), testing::HasSubstr("\"bay\""));
+  const Json created = client.result("session.create", {{"name", "bay"}, {"scene", "bay"}});
+  const Json joined = client.result("session.join", {{"session", created.at("session")}});
+  EXPECT_EQ(joined.at("role"), "owner");
+  client.result("session.join", {{"session", kSession}});
+  client.result("scene.delete", {{"name", "bay"}, {"key", saved.at("key")}});
+  EXPECT_THAT(client.result("scene.list").dump(), testing::Not(testing::HasSubstr("\"bay\"")));
+}
+
+TEST_F(AnyNode, ServesADownloadOfAnotherNode) {
+  for (const std::string route : {"relay", "redirect"}) {
+    start(3, route);
+    WaitingClient client = nodes->connect(route == "relay" ? relay : owner);
+    client.result("session.join", {{"session", kSession}});
+    const Json made = client.result("recording.export");
+    const std::string third = nodes->others(owner).back();
+    const HttpReply reply = download(third, made.at("path"));
+    EXPECT_EQ(reply.status, 200) << route;
+    EXPECT_EQ(reply.body.size(), made.at("bytes")) << route;
+    EXPECT_THAT(reply.header("Content-Disposition"), testing::HasSubstr("s1.vatrec")) << route;
+    EXPECT_EQ(download(third, made.at("path")).status, 404) << route;
+    const Json again = client.result("recording.export");
+    EXPECT_EQ(download(owner, again.at("path")).body.size(), again.at("bytes")) << route;
+  }
+}
+
+TEST_F(AnyNode, RedirectsRequestsThatNameASession) {
+  start(2, "redirect");
+  WaitingClient admin = connect(relay, kAdmin);
+  const auto expect_moved = [&](const std::string& method, const Json& params) {
+    const Json data = admin.call(method, params).at("error").at("data");
+    EXPECT_EQ(data.at("kind"), "moved") << method;
+    EXPECT_EQ(data.at("url"), nodes->url(owner)) << method;
+  };
+  expect_moved("session.close", {{"session", kSession}});
+  expect_moved("access.ticket", {{"session", kSession}, {"role", "viewer"}});
+  expect_moved("replay.open", {{"session", kSession}});
+  expect_moved("server.move", {{"session", kSession}, {"node", relay}});
+  WaitingClient there = connect(owner, kAdmin);
+  const std::string replay = there.result("replay.open", {{"session", kSession}}).at("session");
+  expect_moved("session.join", {{"session", replay}});
+  expect_moved("session.close", {{"session", replay}});
+}
+
+}  // namespace
+}  // namespace vat::test::any_node_test
