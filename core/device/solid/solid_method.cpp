@@ -66,7 +66,7 @@ bool SolidMethod::take_steps(const EngineInput& input, std::uint32_t steps) {
   StepMoment moment{0, 0, dt / 2, dt, 0};
   for (std::uint32_t s = 0; s < steps; ++s) {
     moment.time = time(s);
-    take_step(moment, time(s + 1), report);
+    take_step(moment, moment.time + dt, report);
     report.count_evaluation(model_->particle_count);
     moment.closing = dt / 2;
   }
