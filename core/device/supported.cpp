@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/damping/damping_solve.h"
-#include "core/device/incompressible/device_step_control.h"
+#include "core/device/liquid/device_step_control.h"
 #include "core/device/solid/solid_geometry.h"
 
 namespace vat {

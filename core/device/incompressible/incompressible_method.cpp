@@ -8,8 +8,8 @@
 
 #include "core/device/common/device_motion.h"
 #include "core/device/incompressible/device_solve.h"
-#include "core/device/incompressible/device_step_control.h"
 #include "core/device/liquid/device_particles.h"
+#include "core/device/liquid/device_step_control.h"
 #include "core/liquid/incompressible/solve_limits.h"
 #include "core/stepping/control/step_control.h"
 #include "core/support/check.h"

@@ -7,6 +7,7 @@
 
 #include "core/damping/damping_solve.h"
 #include "core/device/common/device_motion.h"
+#include "core/device/common/verlet_method.h"
 #include "core/device/liquid/device_particles.h"
 #include "core/device/solid/device_solids.h"
 
@@ -36,35 +37,38 @@ std::optional<MovingSolids> moving_particles(const DeviceSolids* solids) {
   return MovingSolids{solids->position(), solids->velocity_in_forces()};
 }
 
-class TaitMethod : public DeviceMethod {
+class TaitMethod : public VerletMethod {
  public:
-  TaitMethod(Program& program, std::shared_ptr<const Model> model, const LiquidGeometry& geometry)
-      : program_(program),
-        model_(std::move(model)),
+  TaitMethod(Program& program, std::shared_ptr<const Model> compiled,
+             const LiquidGeometry& geometry)
+      : VerletMethod(std::move(compiled)),
+        program_(program),
         geometry_(geometry),
-        solids_(make_solids(program, *model_)),
-        particles_(program, *model_, geometry, moving_particles(solids_.get())),
-        now_(program, model_->liquid_count),
-        start_(program, model_->liquid_count) {}
+        solids_(make_solids(program, model())),
+        particles_(program, model(), geometry, moving_particles(solids_.get())),
+        now_(program, model().liquid_count),
+        start_(program, model().liquid_count) {}
 
-  bool take_steps(const EngineInput& input, std::uint32_t steps) override;
   void read(State& state) override;
 
  private:
-  void upload(const State& state);
-  void save();
-  void restore();
-  /// Moves the particles by `start`, and computes their forces at the time `end`.
-  void evaluate(const StepMoment& start, Real end);
+  DeviceCounters& counters() override { return particles_.counters; }
+  void write(const State& state) override;
+  void save() override;
+  void restore() override;
+  void evaluate(const StepMoment& start, Real end) override;
+  bool must_solve(Real dt) const override { return solids_ && solids_->must_solve(dt); }
+  std::uint32_t solve_damping(Real end, Real dt) override {
+    return solids_->solve_damping(end, dt);
+  }
+  void finish(const StepMoment& moment) override;
+  void copy(const TaitState& from, TaitState& to);
+  /// Moves the liquid, and computes its accelerations.
+  void evaluate_liquid(const LiquidParameters& p);
   /// Adds the forces between the liquid and moving solids to those of the solids.
   void find_forces_on_solids(const LiquidParameters& p, Real end);
-  /// Takes a step whose kick and drift begin with `moment`.
-  void take_step(StepMoment moment, Real end, AdvanceReport& report);
-  void finish(const StepMoment& moment);
-  void copy(const TaitState& from, TaitState& to);
 
   Program& program_;
-  const std::shared_ptr<const Model> model_;
   const LiquidGeometry geometry_;
   const std::unique_ptr<DeviceSolids> solids_;  ///< null if all solids are at rest
   DeviceParticles particles_;
@@ -74,15 +78,15 @@ class TaitMethod : public DeviceMethod {
   std::vector<Float4> accelerations_;
 };
 
-void TaitMethod::upload(const State& state) {
-  const std::size_t n = model_->liquid_count;
+void TaitMethod::write(const State& state) {
+  const std::size_t n = model().liquid_count;
   now_.motion.write(state.now);
   particles_.write_solids(state.now);
   if (solids_) solids_->write(state);
   accelerations_.assign(n, {});
   if (state.forces_current) {
     for (std::size_t i = 0; i < n; ++i) {
-      const Vec3 a = state.forces.particle[i] * model_->inverse_mass[i];
+      const Vec3 a = state.forces.particle[i] * model().inverse_mass[i];
       accelerations_[i] = {static_cast<float>(a.x()), static_cast<float>(a.y()),
                            static_cast<float>(a.z()), 0};
     }
@@ -91,32 +95,32 @@ void TaitMethod::upload(const State& state) {
 }
 
 void TaitMethod::read(State& state) {
-  const std::size_t n = model_->liquid_count;
+  const std::size_t n = model().liquid_count;
   accelerations_.resize(n);
   read_.read(program_, now_.motion, n);
   program_.read(now_.acceleration, std::span<Float4>(accelerations_));
   if (solids_) solids_->read();
   read_.copy_to(state.now);
   // No force acts on solids that are held.
-  state.forces.particle.assign(model_->particle_count, Vec3::Zero());
-  state.forces.rigid_force.assign(model_->rigid_bodies.size(), Vec3::Zero());
-  state.forces.rigid_torque.assign(model_->rigid_bodies.size(), Vec3::Zero());
+  state.forces.particle.assign(model().particle_count, Vec3::Zero());
+  state.forces.rigid_force.assign(model().rigid_bodies.size(), Vec3::Zero());
+  state.forces.rigid_torque.assign(model().rigid_bodies.size(), Vec3::Zero());
   for (std::size_t i = 0; i < n; ++i) {
     const Float4& a = accelerations_[i];
     state.forces.particle[i] =
-        model_->mass[i] *
+        model().mass[i] *
         Vec3(static_cast<Real>(a.x), static_cast<Real>(a.y), static_cast<Real>(a.z));
   }
   state.forces_current = true;
-  state.bound = model_->damping.any ? find_bound_of_bodies(*model_) : Oscillation{};
+  state.bound = model().damping.any ? find_bound_of_bodies(model()) : Oscillation{};
   if (!solids_) return;
   solids_->copy_to(state);
-  if (model_->damping.any) state.bound = solids_->bound();
+  if (model().damping.any) state.bound = solids_->bound();
 }
 
 void TaitMethod::copy(const TaitState& from, TaitState& to) {
   to.motion.copy_from(from.motion);
-  program_.copy(from.acceleration, to.acceleration, model_->liquid_count * sizeof(Float4));
+  program_.copy(from.acceleration, to.acceleration, model().liquid_count * sizeof(Float4));
 }
 
 void TaitMethod::save() {
@@ -129,19 +133,24 @@ void TaitMethod::restore() {
   if (solids_) solids_->restore();
 }
 
-void TaitMethod::evaluate(const StepMoment& start, Real end) {
+void TaitMethod::evaluate_liquid(const LiquidParameters& p) {
   DeviceParticles& s = particles_;
-  StepMoment at_end = start;
-  at_end.time = end;
-  at_end.prediction = model_->damping.any ? start.opening : 0;
-  const LiquidParameters p = geometry_.at(*model_, at_end);
-  if (solids_) solids_->move(start, end, model_->scene.numerics.step, s.counters.buffer);
   s.sort_after("move", p, now_.motion.position, now_.motion.velocity, now_.acceleration);
   program_.run("find_pressure", s.count(), p, s.cells.begins, s.sorted_place, s.sorted_motion,
                s.density, s.neighbour_counts, s.neighbours);
   s.find_solid_pressure(p);
   program_.run("find_acceleration", s.count(), p, s.cells.begins, s.order, s.sorted_place,
                s.sorted_motion, s.neighbour_counts, s.neighbours, now_.acceleration);
+}
+
+void TaitMethod::evaluate(const StepMoment& start, Real end) {
+  StepMoment at_end = start;
+  at_end.time = end;
+  // No damping of the liquid needs a solve.
+  at_end.prediction = model().damping.any ? start.opening : 0;
+  const LiquidParameters p = geometry_.at(model(), at_end);
+  if (solids_) solids_->move(start, end, model().scene.numerics.step, particles_.counters.buffer);
+  evaluate_liquid(p);
   if (solids_) find_forces_on_solids(p, end);
 }
 
@@ -153,50 +162,10 @@ void TaitMethod::find_forces_on_solids(const LiquidParameters& p, Real end) {
   solids_->gather();
 }
 
-void TaitMethod::take_step(StepMoment moment, Real end, AdvanceReport& report) {
-  const bool must_solve = solids_ && solids_->must_solve(moment.drift);
-  // Forces on solids with a solve depend on the velocities before it; see evaluate_at_end().
-  moment.prediction = model_->damping.any && !must_solve ? moment.opening : 0;
-  evaluate(moment, end);
-  if (must_solve) report.iterations.damping += solids_->solve_damping(end, moment.opening);
-}
-
 void TaitMethod::finish(const StepMoment& moment) {
-  program_.run("finish", model_->liquid_count, geometry_.at(*model_, moment), now_.motion.position,
+  program_.run("finish", model().liquid_count, geometry_.at(model(), moment), now_.motion.position,
                now_.motion.velocity, now_.acceleration, particles_.counters.buffer);
-  if (solids_) solids_->finish(moment, model_->scene.numerics.step, particles_.counters.buffer);
-}
-
-bool TaitMethod::take_steps(const EngineInput& input, std::uint32_t steps) {
-  const State& state = input.state;
-  const Real dt = model_->scene.numerics.step;
-  const auto time = [&](std::uint32_t s) { return static_cast<Real>(state.step_count + s) * dt; };
-  if (!input.continues) upload(state);
-  save();
-  particles_.counters.clear();
-  AdvanceReport report = input.report;
-  if (!input.continues && !state.forces_current) {
-    evaluate({time(0), 0, 0, 0, 0}, time(0));
-    report.count_evaluation(model_->particle_count);
-  }
-  StepMoment moment{0, 0, dt / 2, dt, 0};
-  for (std::uint32_t s = 0; s < steps; ++s) {
-    moment.time = time(s);
-    take_step(moment, moment.time + dt, report);
-    report.count_evaluation(model_->particle_count);
-    moment.closing = dt / 2;
-  }
-  moment.time = time(steps);
-  finish(moment);
-  const Counters counters = particles_.counters.read();
-  if (counters.faults != 0) {
-    restore();
-    return false;
-  }
-  report.count_steps(steps, dt, dt);
-  report.wall_stops += static_cast<std::uint64_t>(counters.stops);
-  input.report = std::move(report);
-  return true;
+  if (solids_) solids_->finish(moment, model().scene.numerics.step, particles_.counters.buffer);
 }
 
 }  // namespace

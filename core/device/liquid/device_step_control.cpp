@@ -1,9 +1,9 @@
-#include "core/device/incompressible/device_step_control.h"
+#include "core/device/liquid/device_step_control.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/device/incompressible/device_solve.h"
+#include "core/device/common/kernel_values.h"
 #include "core/evaluation/motion_probe.h"
 #include "core/limits.h"
 #include "core/stepping/control/step_control.h"
