@@ -13,19 +13,24 @@ void VerletMethod::take_step(StepMoment moment, Real end, AdvanceReport& report)
   if (solves) report.iterations.damping += solve_damping(end, moment.opening);
 }
 
-void VerletMethod::take_fixed_steps(std::uint64_t first, std::uint32_t steps,
-                                    AdvanceReport& report) {
-  const Real dt = model_->scene.numerics.step;
-  const auto time = [&](std::uint32_t s) { return static_cast<Real>(first + s) * dt; };
+void VerletMethod::evaluate_at_start(Real time, AdvanceReport& report) {
+  evaluate({time, 0, 0, 0, 0}, time);
+  report.count_evaluation(model_->particle_count);
+}
+
+bool VerletMethod::take_nominal_steps(const NominalSteps& steps, AdvanceReport& report) {
+  const Real dt = steps.step;
+  if (!steps.has_forces) evaluate_at_start(steps.time(0), report);
   StepMoment moment{0, 0, dt / 2, dt, 0};
-  for (std::uint32_t s = 0; s < steps; ++s) {
-    moment.time = time(s);
+  for (std::uint32_t s = 0; s < steps.count; ++s) {
+    moment.time = steps.time(s);
     take_step(moment, moment.time + dt, report);
     moment.closing = dt / 2;
   }
-  moment.time = time(steps);
+  moment.time = steps.time(steps.count);
   finish(moment);
-  report.count_steps(steps, dt, dt);
+  report.count_steps(steps.count, dt, dt);
+  return true;
 }
 
 bool VerletMethod::take_steps(const EngineInput& input, std::uint32_t steps) {
@@ -35,14 +40,11 @@ bool VerletMethod::take_steps(const EngineInput& input, std::uint32_t steps) {
   save();
   counters().clear();
   AdvanceReport report = input.report;
-  if (!input.continues && !state.forces_current) {
-    const Real now = static_cast<Real>(state.step_count) * model_->scene.numerics.step;
-    evaluate({now, 0, 0, 0, 0}, now);
-    report.count_evaluation(model_->particle_count);
-  }
-  take_fixed_steps(state.step_count, steps, report);
+  const bool is_valid = take_nominal_steps({state.step_count, steps, model_->scene.numerics.step,
+                                            input.continues || state.forces_current},
+                                           report);
   const Counters counted = counters().read();
-  if (counted.faults != 0) {
+  if (!is_valid || counted.faults != 0) {
     restore();
     return false;
   }

@@ -10,6 +10,17 @@
 
 namespace vat {
 
+/// The nominal steps of a call.
+struct NominalSteps {
+  std::uint64_t first;  ///< number of earlier steps
+  std::uint32_t count;
+  Real step;        ///< [s]
+  bool has_forces;  ///< the device has the forces at the start
+
+  /// Returns the end of the first `steps` of them [s].
+  Real time(std::uint32_t steps) const { return static_cast<Real>(first + steps) * step; }
+};
+
 /// Steps of velocity Verlet on a device. The kick at the end of a step is a part of the next step,
 /// or of finish().
 class VerletMethod : public DeviceMethod {
@@ -36,13 +47,16 @@ class VerletMethod : public DeviceMethod {
   virtual std::uint32_t solve_damping(Real end, Real dt) = 0;
   /// Ends a step at the time of `moment`, with its closing kick. Checks the state.
   virtual void finish(const StepMoment& moment) = 0;
+  /// Takes `steps`. Returns false if a state is known to be invalid; the remaining steps are then
+  /// not taken. This function takes fixed steps.
+  virtual bool take_nominal_steps(const NominalSteps& steps, AdvanceReport& report);
 
- private:
+  /// Evaluates the forces of the present state, at its time [s].
+  void evaluate_at_start(Real time, AdvanceReport& report);
   /// Takes a step whose kick and drift begin with `moment`.
   void take_step(StepMoment moment, Real end, AdvanceReport& report);
-  /// Takes fixed steps after `first` earlier steps.
-  void take_fixed_steps(std::uint64_t first, std::uint32_t steps, AdvanceReport& report);
 
+ private:
   const std::shared_ptr<const Model> model_;
 };
 

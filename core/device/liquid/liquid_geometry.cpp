@@ -23,6 +23,13 @@ constexpr Real kPlaces = 1 << 29;  ///< limit of integer positions in particles.
 
 }  // namespace
 
+void remove_walls(LiquidParameters& parameters) {
+  for (int axis = 0; axis < 3; ++axis) {
+    parameters.wall_low[axis] = -std::numeric_limits<double>::infinity();
+    parameters.wall_high[axis] = std::numeric_limits<double>::infinity();
+  }
+}
+
 void LiquidGeometry::set_grid(const Model& model) {
   const auto [low, high] = box_of_cells(model);
   const Real support = model.liquids[model.material[0]]->support_radius;
@@ -95,10 +102,7 @@ LiquidParameters LiquidGeometry::at(const Model& model, const StepMoment& moment
     p.drag = static_cast<float>(scene.settling->drag);
     store(motion.velocity, p.still);
   }
-  for (int axis = 0; axis < 3; ++axis) {
-    p.wall_low[axis] = -std::numeric_limits<double>::infinity();
-    p.wall_high[axis] = std::numeric_limits<double>::infinity();
-  }
+  remove_walls(p);
   for (const int wall : model.walls) {
     const int axis = wall / 2;
     const Real plane = plane_of_wall(*scene.vat, motion, wall);

@@ -50,6 +50,10 @@ struct LiquidParameters {
   std::int32_t solids;     ///< solid particles
 };
 
+/// Sets the walls of the parameters so far away that they stop no particles. Images in the walls
+/// remain.
+void remove_walls(LiquidParameters& parameters);
+
 /// Computes the parameters of kernels for a model with one liquid.
 class LiquidGeometry {
  public:

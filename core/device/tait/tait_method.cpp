@@ -1,5 +1,6 @@
 #include "core/device/tait/tait_method.h"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -7,8 +8,10 @@
 
 #include "core/damping/damping_solve.h"
 #include "core/device/common/device_motion.h"
+#include "core/device/common/kernel_values.h"
 #include "core/device/common/verlet_method.h"
 #include "core/device/liquid/device_particles.h"
+#include "core/device/liquid/device_step_control.h"
 #include "core/device/solid/device_solids.h"
 
 namespace vat {
@@ -26,6 +29,28 @@ struct TaitState {
   DeviceMotion motion;
   Buffer acceleration;
 };
+
+/// The data of adaptive steps.
+struct AdaptiveSteps {
+  AdaptiveSteps(Program& program, const Model& model)
+      : partial(program, bytes_of_partial(model.liquid_count)),
+        control(program, model, partial),
+        before(program, model.liquid_count) {}
+  static std::size_t bytes_for(const Model& model) {
+    return bytes_of_partial(model.liquid_count) + DeviceStepControl::bytes_for(model) +
+           model.liquid_count * TaitState::kBytes;
+  }
+
+  Buffer partial;
+  DeviceStepControl control;
+  TaitState before;  ///< state at the start of a step
+  StepHistory history;
+  StepHistory saved_history;
+};
+
+bool is_adaptive(const Model& model) {
+  return model.scene.numerics.control == StepControl::adaptive;
+}
 
 std::unique_ptr<DeviceSolids> make_solids(Program& program, const Model& model) {
   if (!solids_move(model)) return nullptr;
@@ -47,7 +72,9 @@ class TaitMethod : public VerletMethod {
         solids_(make_solids(program, model())),
         particles_(program, model(), geometry, moving_particles(solids_.get())),
         now_(program, model().liquid_count),
-        start_(program, model().liquid_count) {}
+        start_(program, model().liquid_count) {
+    if (is_adaptive(model())) adaptive_.emplace(program, model());
+  }
 
   void read(State& state) override;
 
@@ -62,11 +89,20 @@ class TaitMethod : public VerletMethod {
     return solids_->solve_damping(end, dt);
   }
   void finish(const StepMoment& moment) override;
+  bool take_nominal_steps(const NominalSteps& steps, AdvanceReport& report) override;
   void copy(const TaitState& from, TaitState& to);
   /// Moves the liquid, and computes its accelerations.
   void evaluate_liquid(const LiquidParameters& p);
   /// Adds the forces between the liquid and moving solids to those of the solids.
   void find_forces_on_solids(const LiquidParameters& p, Real end);
+  /// Takes and checks an adaptive step.
+  bool take_part(const StepPart& part, AdvanceReport& report);
+  Real find_allowed_step(Real start, AdvanceReport& report);
+  /// Returns the rate of motion before the first step, as Stepper::probe_start(). Then the forces
+  /// are those at `start`.
+  Real probe_start(Real start, Real dt, AdvanceReport& report);
+  /// Returns the rate of motion since the saved state `before`.
+  Real observed_rate();
 
   Program& program_;
   const LiquidGeometry geometry_;
@@ -74,6 +110,7 @@ class TaitMethod : public VerletMethod {
   DeviceParticles particles_;
   TaitState now_;
   TaitState start_;  ///< state before a call, for a failed step
+  std::optional<AdaptiveSteps> adaptive_;
   ReadMotion read_;
   std::vector<Float4> accelerations_;
 };
@@ -83,6 +120,7 @@ void TaitMethod::write(const State& state) {
   now_.motion.write(state.now);
   particles_.write_solids(state.now);
   if (solids_) solids_->write(state);
+  if (adaptive_) adaptive_->history = state.history;
   accelerations_.assign(n, {});
   if (state.forces_current) {
     for (std::size_t i = 0; i < n; ++i) {
@@ -112,6 +150,7 @@ void TaitMethod::read(State& state) {
         Vec3(static_cast<Real>(a.x), static_cast<Real>(a.y), static_cast<Real>(a.z));
   }
   state.forces_current = true;
+  if (adaptive_) state.history = adaptive_->history;
   state.bound = model().damping.any ? find_bound_of_bodies(model()) : Oscillation{};
   if (!solids_) return;
   solids_->copy_to(state);
@@ -126,11 +165,13 @@ void TaitMethod::copy(const TaitState& from, TaitState& to) {
 void TaitMethod::save() {
   copy(now_, start_);
   if (solids_) solids_->save();
+  if (adaptive_) adaptive_->saved_history = adaptive_->history;
 }
 
 void TaitMethod::restore() {
   copy(start_, now_);
   if (solids_) solids_->restore();
+  if (adaptive_) adaptive_->history = adaptive_->saved_history;
 }
 
 void TaitMethod::evaluate_liquid(const LiquidParameters& p) {
@@ -163,9 +204,73 @@ void TaitMethod::find_forces_on_solids(const LiquidParameters& p, Real end) {
 }
 
 void TaitMethod::finish(const StepMoment& moment) {
-  program_.run("finish", model().liquid_count, geometry_.at(model(), moment), now_.motion.position,
-               now_.motion.velocity, now_.acceleration, particles_.counters.buffer);
+  LiquidParameters p = geometry_.at(model(), moment);
+  p.greatest_speed2 = geometry_.greatest_speed2(2 * moment.closing);  // a kick lasts half a step
+  program_.run("finish", model().liquid_count, p, now_.motion.position, now_.motion.velocity,
+               now_.acceleration, particles_.counters.buffer);
   if (solids_) solids_->finish(moment, model().scene.numerics.step, particles_.counters.buffer);
+}
+
+Real TaitMethod::observed_rate() {
+  const TaitState& before = adaptive_->before;
+  return adaptive_->control.observed_rate(
+      model(), {before.motion.position, now_.motion.position, before.acceleration,
+                now_.acceleration, particles_.weight()});
+}
+
+Real TaitMethod::probe_start(Real start, Real dt, AdvanceReport& report) {
+  evaluate_at_start(start, report);
+  copy(now_, adaptive_->before);
+  LiquidParameters moved = geometry_.at(model(), {start + dt, 0, dt / 2, dt, 0});
+  remove_walls(moved);
+  evaluate_liquid(moved);
+  report.count_evaluation(model().particle_count);
+  const Real rate = observed_rate();
+  copy(adaptive_->before, now_);
+  return rate;
+}
+
+Real TaitMethod::find_allowed_step(Real start, AdvanceReport& report) {
+  const Real step =
+      adaptive_->control.least_step_by_forces(model(), now_.motion.velocity, now_.acceleration);
+  StepHistory& history = adaptive_->history;
+  if (history.step == 0) {
+    const Real nominal = model().scene.numerics.step;
+    history.observed_rate = probe_start(start, kProbeShare * std::min(step, nominal), report);
+  }
+  return limit_by_rate(model(), step, history.observed_rate);
+}
+
+bool TaitMethod::take_part(const StepPart& part, AdvanceReport& report) {
+  const Real dt = part.length;
+  copy(now_, adaptive_->before);
+  take_step({part.start, 0, dt / 2, dt, 0}, part.end, report);
+  finish({part.end, dt / 2, 0, 0, 0});
+  report.count_steps(1, dt, dt);
+  if (particles_.counters.read().faults != 0) return false;
+  adaptive_->history.observed_rate = observed_rate();
+  return true;
+}
+
+bool TaitMethod::take_nominal_steps(const NominalSteps& steps, AdvanceReport& report) {
+  if (!adaptive_) return VerletMethod::take_nominal_steps(steps, report);
+  StepHistory& history = adaptive_->history;
+  bool has_forces = steps.has_forces;
+  bool is_valid = true;
+  for (std::uint32_t s = 0; s < steps.count && is_valid; ++s) {
+    is_valid = take_varied_step(
+        {steps.time(s), steps.time(s + 1), steps.step}, history,
+        [&](Real start) {
+          has_forces = has_forces || history.step == 0;  // after the probe
+          return find_allowed_step(start, report);
+        },
+        [&](const StepPart& part) {
+          if (!has_forces) evaluate_at_start(part.start, report);
+          has_forces = true;
+          return take_part(part, report);
+        });
+  }
+  return is_valid;
 }
 
 }  // namespace
@@ -174,7 +279,9 @@ std::size_t bytes_for_tait(const Model& model) {
   const LiquidGeometry geometry(model, guard_bounds(model));
   const bool moves = solids_move(model);
   return DeviceParticles::bytes_for(model, geometry, moves) +
-         2 * model.liquid_count * TaitState::kBytes + (moves ? DeviceSolids::bytes_for(model) : 0);
+         2 * model.liquid_count * TaitState::kBytes +
+         (is_adaptive(model) ? AdaptiveSteps::bytes_for(model) : 0) +
+         (moves ? DeviceSolids::bytes_for(model) : 0);
 }
 
 std::unique_ptr<DeviceMethod> make_tait_method(Program& program,

@@ -198,7 +198,7 @@ TEST(Device, RefusesFeaturesThatItLacks) {
       {"/pair_precision", [](Scene& s) { s.pair_precision = PairPrecision::double_precision; }},
       {"/numerics/integrator",
        [](Scene& s) { s.numerics.integrator = IntegratorId::symplectic_euler; }},
-      {"/numerics/control", [](Scene& s) { s.numerics.control = StepControl::adaptive; }},
+      {"/numerics/control", [](Scene& s) { s.numerics.control = StepControl::local; }},
       {"/numerics/step", [](Scene& s) { s.materials[0].liquid->viscosity = 200; }},
       {"/materials",
        [](Scene& s) {

@@ -153,6 +153,25 @@ inline void expect_accuracy_of_cpu(const Scene& common, std::span<const SceneCas
   }
 }
 
+/// Expects that the device takes the adaptive steps of the CPU, because their limits differ by
+/// rounding only. The motion must limit a step to less than a quarter of the nominal step.
+inline void expect_adaptive_steps_of_cpu(const Scene& scene, int ticks) {
+  Simulation device = make_on_device(scene);
+  Simulation cpu = make_simulation(scene);
+  Real least = scene.numerics.step;
+  for (int tick = 0; tick < ticks; ++tick) {
+    const AdvanceReport report = device.advance(1);
+    const AdvanceReport expected = cpu.advance(1);
+    EXPECT_EQ(report.device_steps, 1U);
+    EXPECT_EQ(report.steps, expected.steps) << tick;
+    EXPECT_EQ(report.force_evaluations, expected.force_evaluations) << tick;
+    EXPECT_NEAR(report.least_step, expected.least_step, 1e-12) << tick;
+    EXPECT_NEAR(report.greatest_step, expected.greatest_step, 1e-12) << tick;
+    least = std::min(least, report.least_step);
+  }
+  EXPECT_LT(least, scene.numerics.step / 4) << "the motion limits steps";
+}
+
 /// Expects that the CPU takes the steps of a scene, because one of them fails, with the same
 /// results as without a device.
 inline void expect_steps_of_cpu(const Scene& scene, std::uint32_t steps) {
