@@ -12,6 +12,7 @@
 #include "core/device/common/verlet_method.h"
 #include "core/device/liquid/device_particles.h"
 #include "core/device/liquid/device_step_control.h"
+#include "core/device/liquid/device_surface.h"
 #include "core/device/solid/device_solids.h"
 
 namespace vat {
@@ -74,6 +75,7 @@ class TaitMethod : public VerletMethod {
         now_(program, model().liquid_count),
         start_(program, model().liquid_count) {
     if (is_adaptive(model())) adaptive_.emplace(program, model());
+    if (model().has_surface_tension) surface_.emplace(program, model());
   }
 
   void read(State& state) override;
@@ -111,6 +113,7 @@ class TaitMethod : public VerletMethod {
   TaitState now_;
   TaitState start_;  ///< state before a call, for a failed step
   std::optional<AdaptiveSteps> adaptive_;
+  std::optional<DeviceSurface> surface_;
   ReadMotion read_;
   std::vector<Float4> accelerations_;
 };
@@ -182,6 +185,7 @@ void TaitMethod::evaluate_liquid(const LiquidParameters& p) {
   s.find_solid_pressure(p);
   program_.run("find_acceleration", s.count(), p, s.cells.begins, s.order, s.sorted_place,
                s.sorted_motion, s.neighbour_counts, s.neighbours, now_.acceleration);
+  if (surface_) surface_->add_forces(p, s, now_.acceleration);
 }
 
 void TaitMethod::evaluate(const StepMoment& start, Real end) {
@@ -281,6 +285,7 @@ std::size_t bytes_for_tait(const Model& model) {
   return DeviceParticles::bytes_for(model, geometry, moves) +
          2 * model.liquid_count * TaitState::kBytes +
          (is_adaptive(model) ? AdaptiveSteps::bytes_for(model) : 0) +
+         (model.has_surface_tension ? DeviceSurface::bytes_for(model) : 0) +
          (moves ? DeviceSolids::bytes_for(model) : 0);
 }
 

@@ -200,10 +200,11 @@ TEST(Device, RefusesFeaturesThatItLacks) {
        [](Scene& s) { s.numerics.integrator = IntegratorId::symplectic_euler; }},
       {"/numerics/control", [](Scene& s) { s.numerics.control = StepControl::local; }},
       {"/numerics/step", [](Scene& s) { s.materials[0].liquid->viscosity = 200; }},
-      {"/materials",
+      {"/surface_tension_model",
        [](Scene& s) {
+         s.surface_model = SurfaceModel::cohesion;
          s.materials[0].liquid->surface_tension = 0.07;
-         s.materials[0].liquid->support_radius = 2.5 * kSpacing;
+         s.materials[0].liquid->support_radius = 3 * kSpacing;
        }},
       {"/emitters",
        [](Scene& s) {

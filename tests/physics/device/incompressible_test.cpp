@@ -309,6 +309,11 @@ TEST(IncompressibleDevice, RefusesFeaturesThatItLacks) {
       {"/numerics/control", [](Scene& s) { s.numerics.control = StepControl::local; }},
       {"/numerics/step", [](Scene& s) { s.materials[0].liquid->viscosity = 200; }},
       {"/kernel", [](Scene& s) { s.kernel = KernelId::cubic_spline; }},
+      {"/materials",
+       [](Scene& s) {
+         s.materials[0].liquid->surface_tension = 0.07;
+         s.materials[0].liquid->support_radius = 2.5 * kSpacing;
+       }},
       {"/bodies/1/kind",
        [](Scene& s) {
          s.bodies.push_back(make_body("sponge", BodyKind::deformable, "water",
