@@ -105,7 +105,6 @@ void Missing::check_liquid() {
   reject(may_solve_viscosity(model_), "/numerics/step", "must resolve the viscosity of the liquid");
   reject(is_incompressible() && model_.has_surface_tension, "/materials",
          "must have no surface tension with the pressure solver incompressible");
-  reject(model_.cohesion.has_value(), "/surface_tension_model", "must be curvature");
   reject(model_.is_filled, "/vat/lid", "must be false for a vat full of liquid");
   if (!solids_move(model_)) return;
   check_materials();

@@ -72,6 +72,7 @@ LiquidGeometry::LiquidGeometry(const Model& model, const GuardBounds& bounds) {
   constant_.greatest_speed2 = greatest_speed2(model.scene.numerics.step);
   constant_.density = static_cast<float>(liquid.rest_density);
   constant_.stiffness = static_cast<float>(liquid.rest_density * liquid.stiffness);
+  constant_.tension = static_cast<float>(liquid.tensile_strength);
   // The acceleration is force / mass, and mass / rest volume is the density.
   constant_.slope_factor = static_cast<float>(slope_factor(model, liquid) / liquid.rest_density);
   constant_.viscosity = static_cast<float>(liquid.central_viscosity / liquid.support_radius);

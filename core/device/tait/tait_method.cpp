@@ -10,6 +10,7 @@
 #include "core/device/common/device_motion.h"
 #include "core/device/common/kernel_values.h"
 #include "core/device/common/verlet_method.h"
+#include "core/device/liquid/device_cohesion.h"
 #include "core/device/liquid/device_particles.h"
 #include "core/device/liquid/device_step_control.h"
 #include "core/device/liquid/device_surface.h"
@@ -76,6 +77,7 @@ class TaitMethod : public VerletMethod {
         start_(program, model().liquid_count) {
     if (is_adaptive(model())) adaptive_.emplace(program, model());
     if (model().has_surface_tension) surface_.emplace(program, model());
+    if (model().cohesion) cohesion_.emplace(program, model());
   }
 
   void read(State& state) override;
@@ -114,6 +116,7 @@ class TaitMethod : public VerletMethod {
   TaitState start_;  ///< state before a call, for a failed step
   std::optional<AdaptiveSteps> adaptive_;
   std::optional<DeviceSurface> surface_;
+  std::optional<DeviceCohesion> cohesion_;
   ReadMotion read_;
   std::vector<Float4> accelerations_;
 };
@@ -186,6 +189,7 @@ void TaitMethod::evaluate_liquid(const LiquidParameters& p) {
   program_.run("find_acceleration", s.count(), p, s.cells.begins, s.order, s.sorted_place,
                s.sorted_motion, s.neighbour_counts, s.neighbours, now_.acceleration);
   if (surface_) surface_->add_forces(p, s, now_.acceleration);
+  if (cohesion_) cohesion_->add_forces(p, s, now_.acceleration);
 }
 
 void TaitMethod::evaluate(const StepMoment& start, Real end) {
@@ -204,6 +208,7 @@ void TaitMethod::find_forces_on_solids(const LiquidParameters& p, Real end) {
   solids_->find_forces(end);
   program_.run("add_forces_on_solids", s.count(), p, s.cells.begins, s.order, s.sorted_place,
                s.sorted_motion, s.neighbour_counts, s.neighbours, solids_->force());
+  if (cohesion_) cohesion_->add_forces_on_solids(p, s, solids_->force());
   solids_->gather();
 }
 
@@ -286,6 +291,7 @@ std::size_t bytes_for_tait(const Model& model) {
          2 * model.liquid_count * TaitState::kBytes +
          (is_adaptive(model) ? AdaptiveSteps::bytes_for(model) : 0) +
          (model.has_surface_tension ? DeviceSurface::bytes_for(model) : 0) +
+         (model.cohesion ? DeviceCohesion::bytes_for(model) : 0) +
          (moves ? DeviceSolids::bytes_for(model) : 0);
 }
 

@@ -200,12 +200,6 @@ TEST(Device, RefusesFeaturesThatItLacks) {
        [](Scene& s) { s.numerics.integrator = IntegratorId::symplectic_euler; }},
       {"/numerics/control", [](Scene& s) { s.numerics.control = StepControl::local; }},
       {"/numerics/step", [](Scene& s) { s.materials[0].liquid->viscosity = 200; }},
-      {"/surface_tension_model",
-       [](Scene& s) {
-         s.surface_model = SurfaceModel::cohesion;
-         s.materials[0].liquid->surface_tension = 0.07;
-         s.materials[0].liquid->support_radius = 3 * kSpacing;
-       }},
       {"/emitters",
        [](Scene& s) {
          s.emitters.push_back({.name = "tap",
