@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/damping/damping_solve.h"
-#include "core/device/incompressible/device_step_control.h"
+#include "core/device/liquid/device_step_control.h"
 #include "core/device/solid/solid_geometry.h"
 
 namespace vat {
@@ -13,9 +13,10 @@ namespace {
 /// Returns whether a step can be too long for explicit viscosity.
 bool may_solve_viscosity(const Model& model) {
   const Numerics& numerics = model.scene.numerics;
-  if (!model.is_incompressible) return must_solve_viscosity(model, numerics.step);
   const bool is_adaptive = numerics.control == StepControl::adaptive;
-  return must_solve_own_damping(model, is_adaptive ? longest_adaptive_step(model) : numerics.step);
+  const Real step = is_adaptive ? longest_adaptive_step(model) : numerics.step;
+  return model.is_incompressible ? must_solve_own_damping(model, step)
+                                 : must_solve_viscosity(model, step);
 }
 
 /// Collects the errors of a scene.
@@ -98,13 +99,12 @@ void Missing::check_liquid() {
   reject(is_incompressible() && !scene_.forces.pressure, "/forces/pressure",
          "must be true for an incompressible liquid");
   const StepControl control = scene_.numerics.control;
-  reject(!is_incompressible() && control != StepControl::fixed, "/numerics/control",
-         "must be fixed");
-  reject(is_incompressible() && control == StepControl::local, "/numerics/control",
-         "must be fixed or adaptive");
+  reject(control == StepControl::local, "/numerics/control", "must be fixed or adaptive");
+  reject(control == StepControl::adaptive && solids_move(model_), "/numerics/control",
+         "must be fixed in a scene with bodies that can move");
   reject(may_solve_viscosity(model_), "/numerics/step", "must resolve the viscosity of the liquid");
-  reject(model_.has_surface_tension || model_.cohesion.has_value(), "/materials",
-         "must have no surface tension");
+  reject(is_incompressible() && model_.has_surface_tension, "/materials",
+         "must have no surface tension with the pressure solver incompressible");
   reject(model_.is_filled, "/vat/lid", "must be false for a vat full of liquid");
   if (!solids_move(model_)) return;
   check_materials();

@@ -238,6 +238,21 @@ TEST(BenchDocument, TableOfDevicesComparesWithMostThreadsOfTheCpu) {
   EXPECT_THAT(table, testing::Not(HasSubstr("| b |")));
 }
 
+TEST(BenchDocument, TableOfCasesOnADeviceHasTheClosestMetricAndTheReasons) {
+  const Json rows = Json::parse(R"([
+    {"case": "a", "metric": "near", "error": 0.02, "error of the CPU": 0.01, "must be": "2 +- 0.1",
+     "share of tolerance": 0.2, "passed": true, "refused": ""},
+    {"case": "a", "metric": "nearer", "error": 0.3, "error of the CPU": 0.25, "must be": "<= 1",
+     "share of tolerance": 0.3, "passed": true, "refused": ""},
+    {"case": "a", "metric": "other", "error": null, "error of the CPU": null, "must be": "<= 1",
+     "share of tolerance": null, "passed": null, "refused": "/kernel"},
+    {"case": "b", "metric": "refused", "error": null, "error of the CPU": null, "must be": "<= 1",
+     "share of tolerance": null, "passed": null, "refused": "/periodic"}])");
+  const std::string table = to_markdown(bench::device_cases_table(rows));
+  EXPECT_THAT(table, HasSubstr("| a | 2 of 3 | nearer | 0.3 | 0.25 | <= 1 | /kernel |"));
+  EXPECT_THAT(table, HasSubstr("| b | 0 of 1 | – | – | – | – | /periodic |"));
+}
+
 // Each marker is on one page, which has no other markers.
 TEST(BenchDocument, PagesHaveEveryMarkerFigureAndCase) {
   std::set<std::string> found;

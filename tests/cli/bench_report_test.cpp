@@ -5,12 +5,14 @@
 #include <cstdlib>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "protocol/json/json_reader.h"
 #include "tests/bench/report/plot.h"
 #include "tests/bench/report/table.h"
 #include "tests/bench/validate/validate.h"
 #include "tests/cli/program.h"
+#include "tests/cli/readers.h"
 #include "tests/validation/order.h"
 
 namespace vat::bench::bench_report_test {
@@ -174,6 +176,54 @@ TEST(BenchValidate, ExitsWithOneIfACaseCannotMeasure) {
   const validation::Case silent{"SILENT", "", "none", {}, [](validation::Sheet&) {}};
   EXPECT_EQ(exit_code_of({broken}), 1);
   EXPECT_EQ(exit_code_of({silent}), 1);
+}
+
+/// Adds the position after ten steps, with a tolerance [m].
+void add_position(validation::Sheet& sheet, const char* metric, IntegratorId integrator,
+                  Real tolerance, bool is_held = false) {
+  validation::Run run =
+      sheet.start(validation::with_method(validation::load_scene("DEF-1"), integrator, 1e-3));
+  if (is_held) {
+    ASSERT_TRUE(run.simulation().grab_start(1, run.body().id, 1, Vec3::Zero()).ok());
+  }
+  run.advance_to(0.01);
+  sheet.add(metric, 1.5, run.body().positions[1].x(), validation::within(tolerance, "nobody"), run);
+}
+
+/// A case with one row on a device. The device has velocity Verlet only, and no grabs.
+validation::Case case_on_device(Real tolerance) {
+  return {"MIXED", "made up", "none", {}, [tolerance](validation::Sheet& sheet) {
+            sheet.add({.metric = "no run"});
+            add_position(sheet, "verlet", IntegratorId::velocity_verlet, tolerance);
+            add_position(sheet, "heun", IntegratorId::heun, 1);
+            add_position(sheet, "held", IntegratorId::velocity_verlet, 1, true);
+          }};
+}
+
+TEST(BenchValidate, ComparesTheRowsOnADeviceThatItSupportsWithTheCpu) {
+  const TemporaryFolder folder;
+  Options options;
+  options.output = folder.file("out");
+  const DeviceChoice device = parse_device("opencl").value();
+  EXPECT_EQ(validate(options, {case_on_device(1)}, device), 0);
+  const test::Table table = test::read_csv(folder.file("out/device.csv"));
+  const std::pair<const char*, const char*> expected[] = {{"no run", "no steps"},
+                                                          {"verlet", ""},
+                                                          {"heun", "/numerics/integrator"},
+                                                          {"held", "the CPU took 10 of 10 steps"}};
+  ASSERT_EQ(table.rows.size(), std::size(expected));
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    const auto& [metric, refused] = expected[row];
+    EXPECT_EQ(table.text(row, "metric"), metric);
+    EXPECT_EQ(table.text(row, "refused"), refused);
+    const bool is_on_device = metric == std::string("verlet");
+    EXPECT_EQ(table.text(row, "passed"), is_on_device ? "true" : "");
+    EXPECT_EQ(table.text(row, "error of the CPU").empty(), !is_on_device);
+  }
+  constexpr double kRounding = 1e-13;  // of ten steps in double precision [m]
+  EXPECT_GT(table.number(1, "error"), 1e-3);
+  EXPECT_NEAR(table.number(1, "error"), table.number(1, "error of the CPU"), kRounding);
+  EXPECT_EQ(validate(options, {case_on_device(1e-6)}, device), 1);
 }
 
 TEST(BenchValidate, TolerancesHaveTheirSides) {

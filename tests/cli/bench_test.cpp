@@ -64,6 +64,7 @@ TEST(BenchUsage, WrongWordsAreNamed) {
       {{"speed", "--fast"}, "--fast"},
       {{"validate", "--threads", "0"}, "--threads"},
       {{"validate", "--case"}, "--case"},
+      {{"validate", "--device", "abacus"}, "--device"},
   };
   for (const auto& [arguments, named] : wrong) {
     EXPECT_THAT(run_bench(arguments), exits(2, testing::HasSubstr(named)));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -17,8 +18,9 @@ namespace vat::validation {
 inline constexpr Real kGravity = 9.81;  ///< standard value of the reference cases [m/s^2]
 
 struct Settings {
-  bool quick = false;            ///< fewer or shorter runs, a few seconds per case
-  TaskRunner* runner = nullptr;  ///< for all runs of the case; null: serial
+  bool quick = false;                    ///< fewer or shorter runs, a few seconds per case
+  TaskRunner* runner = nullptr;          ///< for all runs of the case; null: serial
+  std::optional<DeviceChoice> device{};  ///< for all runs that it supports; empty: the CPU
 };
 
 /// The results of a case.
@@ -27,20 +29,22 @@ class Sheet {
   explicit Sheet(const Settings& settings) : settings_(settings) {}
 
   bool quick() const { return settings_.quick; }
-  TaskRunner* runner() const { return settings_.runner; }
-  /// Returns a run with the settings' runner.
-  Run start(const Scene& scene) const { return Run(scene, settings_.runner); }
+  /// Returns a run with the settings' runner and device. The next rows belong to the runs that
+  /// start between the preceding row and them.
+  Run start(const Scene& scene);
 
   /// Adds a row with a value of `run` in its present state.
   void add(std::string metric, Real reference, Real measured, Tolerance tolerance, const Run& run);
   /// Adds a complete row, for values of several runs or of none.
-  void add(Row row) { rows_.push_back(std::move(row)); }
+  void add(Row row);
 
   const std::vector<Row>& rows() const { return rows_; }
 
  private:
   Settings settings_;
   std::vector<Row> rows_;
+  std::shared_ptr<DeviceUse> device_;  ///< of the runs of the next rows
+  bool has_rows_ = false;              ///< rows of these runs
 };
 
 /// A validation case: scenes, metrics and references. `run` throws std::exception if it cannot

@@ -41,7 +41,7 @@ void keep_rest_lengths(BodyDescription& body) {
 
 }  // namespace
 
-Equilibrium relax(Scene scene, Real residual, const Sheet& sheet) {
+Equilibrium relax(Scene scene, Real residual, Sheet& sheet) {
   keep_rest_lengths(scene.bodies.at(0));
   scene.numerics.tick = scene.numerics.step;
   Equilibrium result{std::move(scene), 0, {}};

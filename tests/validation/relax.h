@@ -14,6 +14,6 @@ struct Equilibrium {
 /// Moves the one deformable body of a scene, given as particles, to rest. The run restarts with all
 /// nodes at rest each time the kinetic energy decreases, which removes energy from every mode. Ends
 /// when no force on a free node exceeds `residual` [N]. Throws after 10^6 steps.
-Equilibrium relax(Scene scene, Real residual, const Sheet& sheet);
+Equilibrium relax(Scene scene, Real residual, Sheet& sheet);
 
 }  // namespace vat::validation

@@ -37,6 +37,7 @@ struct Row {
   Tolerance tolerance;
   std::uint64_t state_hash = 0;  ///< at the end of the last run of `measured`
   double seconds = 0;            ///< wall time of these runs
+  std::string refusal{};         ///< DeviceUse::reason() of these runs; empty without a device
 
   /// Returns false for values that are not numbers.
   bool passed() const;

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/device/device_use.h"
 #include "protocol/scene/scene_json.h"
 
 namespace vat::validation {
@@ -60,8 +61,23 @@ Scene with_step(Scene scene, Real step) {
   return scene;
 }
 
-Run::Run(const Scene& scene, TaskRunner* runner)
-    : simulation_(value_of(Simulation::create(scene, runner), scene.name)) {}
+void DeviceUse::count(std::uint32_t taken, const AdvanceReport& report) {
+  steps += report.device_steps;
+  if (!refusal.empty() || report.device_steps == taken) return;
+  refusal = "the CPU took " + std::to_string(taken - report.device_steps) + " of " +
+            std::to_string(taken) + " steps";
+}
+
+Run::Run(const Scene& scene, TaskRunner* runner, std::shared_ptr<DeviceUse> device)
+    : simulation_(value_of(Simulation::create(scene, runner), scene.name)),
+      device_(std::move(device)) {
+  if (!device_) return;
+  const Status used = use_device(device_->device, simulation_);
+  if (used) return;
+  const Error& first = used.errors().front();
+  if (first.code != "not_on_device") throw std::invalid_argument(run_text_of(used.errors()));
+  if (device_->refusal.empty()) device_->refusal = first.path;
+}
 
 void Run::advance_to(Real time) {
   const std::uint32_t count = whole_steps(time - simulation_.time(), simulation_.step_size());
@@ -71,6 +87,7 @@ void Run::advance_to(Real time) {
   steps_ += report.steps;
   force_evaluations_ += report.force_evaluations;
   particle_evaluations_ += report.particle_evaluations;
+  if (device_) device_->count(count, report);
   if (report.undone_steps == 0) return;
   throw std::runtime_error("the guard undid a step (" +
                            std::string(to_string(report.events.front().cause)) +

@@ -8,6 +8,11 @@
 /// Conversions to arguments of kernels.
 namespace vat {
 
+/// A vector of four numbers in double precision of a kernel.
+struct Double4 {
+  double x, y, z, w;
+};
+
 inline void store(const Vec3& from, double (&to)[3]) {
   for (int k = 0; k < 3; ++k) to[k] = from[k];
 }
@@ -28,6 +33,11 @@ inline void store(const Quat& from, double (&to)[4]) {
 inline std::int32_t groups_of(std::size_t particles) {
   constexpr std::size_t kGroup = opencl::Program::kGroup;
   return static_cast<std::int32_t>((particles + kGroup - 1) / kGroup);
+}
+
+/// Returns the bytes of one Double4 for each of these groups.
+inline std::size_t bytes_of_partial(std::size_t particles) {
+  return static_cast<std::size_t>(groups_of(particles)) * sizeof(Double4);
 }
 
 }  // namespace vat

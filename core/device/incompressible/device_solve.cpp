@@ -12,15 +12,6 @@ using opencl::Program;
 
 constexpr int kNextIterations = 4;  // in further batches, if a solve needs more than expected
 
-/// A vector of four double numbers of a kernel.
-struct Double4 {
-  double x, y, z, w;
-};
-
-std::size_t bytes_of_partial(std::size_t particles) {
-  return static_cast<std::size_t>(groups_of(particles)) * sizeof(Double4);
-}
-
 }  // namespace
 
 SolveParameters solve_parameters(const Model& model) {

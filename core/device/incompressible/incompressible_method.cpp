@@ -1,15 +1,14 @@
 #include "core/device/incompressible/incompressible_method.h"
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "core/device/common/device_motion.h"
 #include "core/device/incompressible/device_solve.h"
-#include "core/device/incompressible/device_step_control.h"
 #include "core/device/liquid/device_particles.h"
+#include "core/device/liquid/device_step_control.h"
 #include "core/liquid/incompressible/solve_limits.h"
 #include "core/stepping/control/step_control.h"
 #include "core/support/check.h"
@@ -32,11 +31,6 @@ struct IncompressibleState {
 
   DeviceMotion motion;
   Buffer pressure;
-};
-
-/// A step of the method: its times and its length [s].
-struct Step {
-  Real start, end, length;
 };
 
 /// Steps of symplectic Euler, as Stepper::take_step(). Cells, neighbours and densities are those
@@ -72,12 +66,11 @@ class IncompressibleMethod : public DeviceMethod {
   void find_density_at(Real time);
   void find_acceleration(const LiquidParameters& p, const Buffer& acceleration);
   /// Returns whether the state after the step is valid.
-  bool take_step(const Step& step, AdvanceReport& report);
-  void project_velocities(const Step& step);
+  bool take_step(const StepPart& step, AdvanceReport& report);
+  void project_velocities(const StepPart& step);
   void correct_density(LiquidParameters p);
-  /// Takes a nominal step in the parts that the step control chooses. Returns whether the state is
-  /// valid after each of them. An invalid state could require very short parts.
-  bool take_varied_step(Real start, Real end, AdvanceReport& report);
+  /// Takes a nominal step. Returns whether the state is valid.
+  bool take_nominal_step(const StepPart& nominal, AdvanceReport& report);
   Real find_allowed_step(Real start, AdvanceReport& report);
   /// Returns the rate of motion before the first step, as Stepper::probe_start().
   Real probe_start(Real start, Real dt);
@@ -146,7 +139,7 @@ void IncompressibleMethod::find_acceleration(const LiquidParameters& p,
                s.sorted_motion, s.neighbour_counts, s.neighbours, acceleration);
 }
 
-void IncompressibleMethod::project_velocities(const Step& step) {
+void IncompressibleMethod::project_velocities(const StepPart& step) {
   LiquidParameters p = geometry_.at(*model_, {step.start, 0, 0, 0, 0});
   DeviceParticles& s = particles_;
   const std::size_t n = s.count();
@@ -194,7 +187,7 @@ void IncompressibleMethod::correct_density(LiquidParameters p) {
   }
 }
 
-bool IncompressibleMethod::take_step(const Step& step, AdvanceReport& report) {
+bool IncompressibleMethod::take_step(const StepPart& step, AdvanceReport& report) {
   project_velocities(step);
   LiquidParameters p = geometry_.at(*model_, {step.end, 0, 0, step.length, 0});
   p.greatest_speed2 = geometry_.greatest_speed2(step.length);
@@ -209,10 +202,7 @@ bool IncompressibleMethod::take_step(const Step& step, AdvanceReport& report) {
 Real IncompressibleMethod::probe_start(Real start, Real dt) {
   const LiquidParameters p = geometry_.at(*model_, {start, 0, 0, 0, 0});
   LiquidParameters moved = geometry_.at(*model_, {start + dt, 0, dt / 2, dt, 0});
-  for (int k = 0; k < 3; ++k) {  // the walls do not hold the particles
-    moved.wall_low[k] = -std::numeric_limits<double>::infinity();
-    moved.wall_high[k] = std::numeric_limits<double>::infinity();
-  }
+  remove_walls(moved);
   const Buffer& before = solve_.whole;
   const Buffer& after = solve_.solve_motion;
   find_acceleration(p, before);
@@ -237,19 +227,15 @@ Real IncompressibleMethod::find_allowed_step(Real start, AdvanceReport& report) 
   return limit_by_rate(*model_, step, history_.observed_rate);
 }
 
-bool IncompressibleMethod::take_varied_step(Real start, Real end, AdvanceReport& report) {
-  const Real nominal = model_->scene.numerics.step;
-  for (Real left = nominal; left > 0;) {
-    const Real begin = start + (nominal - left);
-    const std::uint32_t count =
-        choose_step_count(find_allowed_step(begin, report), left, nominal, history_);
-    const Real dt = history_.step;
-    if (!take_step({begin, count == 1 ? end : begin + dt, dt}, report)) return false;
-    history_.observed_rate = 0;  // a step has one evaluation
-    ++history_.held;
-    left = count == 1 ? 0 : left - dt;
-  }
-  return true;
+bool IncompressibleMethod::take_nominal_step(const StepPart& nominal, AdvanceReport& report) {
+  if (!control_) return take_step(nominal, report);
+  return take_varied_step(
+      nominal, history_, [&](Real start) { return find_allowed_step(start, report); },
+      [&](const StepPart& part) {
+        if (!take_step(part, report)) return false;
+        history_.observed_rate = 0;  // a step has one evaluation
+        return true;
+      });
 }
 
 bool IncompressibleMethod::take_steps(const EngineInput& input, std::uint32_t steps) {
@@ -267,8 +253,7 @@ bool IncompressibleMethod::take_steps(const EngineInput& input, std::uint32_t st
   AdvanceReport report = input.report;
   bool is_sound = true;
   for (std::uint32_t s = 0; s < steps && is_sound; ++s) {
-    is_sound = control_ ? take_varied_step(time(s), time(s + 1), report)
-                        : take_step({time(s), time(s + 1), dt}, report);
+    is_sound = take_nominal_step({time(s), time(s + 1), dt}, report);
   }
   if (!is_sound) {
     copy(start_, now_);

@@ -23,6 +23,13 @@ constexpr Real kPlaces = 1 << 29;  ///< limit of integer positions in particles.
 
 }  // namespace
 
+void remove_walls(LiquidParameters& parameters) {
+  for (int axis = 0; axis < 3; ++axis) {
+    parameters.wall_low[axis] = -std::numeric_limits<double>::infinity();
+    parameters.wall_high[axis] = std::numeric_limits<double>::infinity();
+  }
+}
+
 void LiquidGeometry::set_grid(const Model& model) {
   const auto [low, high] = box_of_cells(model);
   const Real support = model.liquids[model.material[0]]->support_radius;
@@ -65,6 +72,7 @@ LiquidGeometry::LiquidGeometry(const Model& model, const GuardBounds& bounds) {
   constant_.greatest_speed2 = greatest_speed2(model.scene.numerics.step);
   constant_.density = static_cast<float>(liquid.rest_density);
   constant_.stiffness = static_cast<float>(liquid.rest_density * liquid.stiffness);
+  constant_.tension = static_cast<float>(liquid.tensile_strength);
   // The acceleration is force / mass, and mass / rest volume is the density.
   constant_.slope_factor = static_cast<float>(slope_factor(model, liquid) / liquid.rest_density);
   constant_.viscosity = static_cast<float>(liquid.central_viscosity / liquid.support_radius);
@@ -95,10 +103,7 @@ LiquidParameters LiquidGeometry::at(const Model& model, const StepMoment& moment
     p.drag = static_cast<float>(scene.settling->drag);
     store(motion.velocity, p.still);
   }
-  for (int axis = 0; axis < 3; ++axis) {
-    p.wall_low[axis] = -std::numeric_limits<double>::infinity();
-    p.wall_high[axis] = std::numeric_limits<double>::infinity();
-  }
+  remove_walls(p);
   for (const int wall : model.walls) {
     const int axis = wall / 2;
     const Real plane = plane_of_wall(*scene.vat, motion, wall);

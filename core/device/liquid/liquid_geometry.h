@@ -32,6 +32,7 @@ struct LiquidParameters {
   float density;       ///< at rest [kg/m^3]
   float layer;         ///< pressure under one layer of particles [Pa]
   float stiffness;     ///< density times square of the speed of sound [Pa]
+  float tension;       ///< maximum tension [Pa]
   float slope_factor;  ///< acceleration / sum of pressures and gradients
   float viscosity;     ///< central viscosity / support radius
   float solid_factor;  ///< force on a solid / (its weight times sum of pressures and gradients)
@@ -49,6 +50,10 @@ struct LiquidParameters {
   std::int32_t count;      ///< liquid particles
   std::int32_t solids;     ///< solid particles
 };
+
+/// Sets the walls of the parameters so far away that they stop no particles. Images in the walls
+/// remain.
+void remove_walls(LiquidParameters& parameters);
 
 /// Computes the parameters of kernels for a model with one liquid.
 class LiquidGeometry {

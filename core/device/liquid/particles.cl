@@ -27,6 +27,7 @@ typedef struct {
   float density;
   float layer;
   float stiffness;
+  float tension;
   float slope_factor;
   float viscosity;
   float solid_factor;

@@ -85,5 +85,6 @@ kernel void find_pressure(const Parameters p, global const int* begins,
   if (is_solid(own)) return;
   if (sum > 1) sum -= own_excess(&p, n, as_float(own.w));
   density[slot] = sum;
-  sorted_motion[slot].w = max(0.0f, p.stiffness * tait_pressure(sum)) / (sum * sum);
+  const float square = sum * sum;
+  sorted_motion[slot].w = max(0 - p.tension * square, p.stiffness * tait_pressure(sum)) / square;
 }

@@ -1,5 +1,6 @@
 #include "core/device/tait/tait_method.h"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -7,7 +8,12 @@
 
 #include "core/damping/damping_solve.h"
 #include "core/device/common/device_motion.h"
+#include "core/device/common/kernel_values.h"
+#include "core/device/common/verlet_method.h"
+#include "core/device/liquid/device_cohesion.h"
 #include "core/device/liquid/device_particles.h"
+#include "core/device/liquid/device_step_control.h"
+#include "core/device/liquid/device_surface.h"
 #include "core/device/solid/device_solids.h"
 
 namespace vat {
@@ -26,6 +32,28 @@ struct TaitState {
   Buffer acceleration;
 };
 
+/// The data of adaptive steps.
+struct AdaptiveSteps {
+  AdaptiveSteps(Program& program, const Model& model)
+      : partial(program, bytes_of_partial(model.liquid_count)),
+        control(program, model, partial),
+        before(program, model.liquid_count) {}
+  static std::size_t bytes_for(const Model& model) {
+    return bytes_of_partial(model.liquid_count) + DeviceStepControl::bytes_for(model) +
+           model.liquid_count * TaitState::kBytes;
+  }
+
+  Buffer partial;
+  DeviceStepControl control;
+  TaitState before;  ///< state at the start of a step
+  StepHistory history;
+  StepHistory saved_history;
+};
+
+bool is_adaptive(const Model& model) {
+  return model.scene.numerics.control == StepControl::adaptive;
+}
+
 std::unique_ptr<DeviceSolids> make_solids(Program& program, const Model& model) {
   if (!solids_move(model)) return nullptr;
   return std::make_unique<DeviceSolids>(program, model, guard_bounds(model));
@@ -36,53 +64,73 @@ std::optional<MovingSolids> moving_particles(const DeviceSolids* solids) {
   return MovingSolids{solids->position(), solids->velocity_in_forces()};
 }
 
-class TaitMethod : public DeviceMethod {
+class TaitMethod : public VerletMethod {
  public:
-  TaitMethod(Program& program, std::shared_ptr<const Model> model, const LiquidGeometry& geometry)
-      : program_(program),
-        model_(std::move(model)),
+  TaitMethod(Program& program, std::shared_ptr<const Model> compiled,
+             const LiquidGeometry& geometry)
+      : VerletMethod(std::move(compiled)),
+        program_(program),
         geometry_(geometry),
-        solids_(make_solids(program, *model_)),
-        particles_(program, *model_, geometry, moving_particles(solids_.get())),
-        now_(program, model_->liquid_count),
-        start_(program, model_->liquid_count) {}
+        solids_(make_solids(program, model())),
+        particles_(program, model(), geometry, moving_particles(solids_.get())),
+        now_(program, model().liquid_count),
+        start_(program, model().liquid_count) {
+    if (is_adaptive(model())) adaptive_.emplace(program, model());
+    if (model().has_surface_tension) surface_.emplace(program, model());
+    if (model().cohesion) cohesion_.emplace(program, model());
+  }
 
-  bool take_steps(const EngineInput& input, std::uint32_t steps) override;
   void read(State& state) override;
 
  private:
-  void upload(const State& state);
-  void save();
-  void restore();
-  /// Moves the particles by `start`, and computes their forces at the time `end`.
-  void evaluate(const StepMoment& start, Real end);
+  DeviceCounters& counters() override { return particles_.counters; }
+  void write(const State& state) override;
+  void save() override;
+  void restore() override;
+  void evaluate(const StepMoment& start, Real end) override;
+  bool must_solve(Real dt) const override { return solids_ && solids_->must_solve(dt); }
+  std::uint32_t solve_damping(Real end, Real dt) override {
+    return solids_->solve_damping(end, dt);
+  }
+  void finish(const StepMoment& moment) override;
+  bool take_nominal_steps(const NominalSteps& steps, AdvanceReport& report) override;
+  void copy(const TaitState& from, TaitState& to);
+  /// Moves the liquid, and computes its accelerations.
+  void evaluate_liquid(const LiquidParameters& p);
   /// Adds the forces between the liquid and moving solids to those of the solids.
   void find_forces_on_solids(const LiquidParameters& p, Real end);
-  /// Takes a step whose kick and drift begin with `moment`.
-  void take_step(StepMoment moment, Real end, AdvanceReport& report);
-  void finish(const StepMoment& moment);
-  void copy(const TaitState& from, TaitState& to);
+  /// Takes and checks an adaptive step.
+  bool take_part(const StepPart& part, AdvanceReport& report);
+  Real find_allowed_step(Real start, AdvanceReport& report);
+  /// Returns the rate of motion before the first step, as Stepper::probe_start(). Then the forces
+  /// are those at `start`.
+  Real probe_start(Real start, Real dt, AdvanceReport& report);
+  /// Returns the rate of motion since the saved state `before`.
+  Real observed_rate();
 
   Program& program_;
-  const std::shared_ptr<const Model> model_;
   const LiquidGeometry geometry_;
   const std::unique_ptr<DeviceSolids> solids_;  ///< null if all solids are at rest
   DeviceParticles particles_;
   TaitState now_;
   TaitState start_;  ///< state before a call, for a failed step
+  std::optional<AdaptiveSteps> adaptive_;
+  std::optional<DeviceSurface> surface_;
+  std::optional<DeviceCohesion> cohesion_;
   ReadMotion read_;
   std::vector<Float4> accelerations_;
 };
 
-void TaitMethod::upload(const State& state) {
-  const std::size_t n = model_->liquid_count;
+void TaitMethod::write(const State& state) {
+  const std::size_t n = model().liquid_count;
   now_.motion.write(state.now);
   particles_.write_solids(state.now);
   if (solids_) solids_->write(state);
+  if (adaptive_) adaptive_->history = state.history;
   accelerations_.assign(n, {});
   if (state.forces_current) {
     for (std::size_t i = 0; i < n; ++i) {
-      const Vec3 a = state.forces.particle[i] * model_->inverse_mass[i];
+      const Vec3 a = state.forces.particle[i] * model().inverse_mass[i];
       accelerations_[i] = {static_cast<float>(a.x()), static_cast<float>(a.y()),
                            static_cast<float>(a.z()), 0};
     }
@@ -91,57 +139,67 @@ void TaitMethod::upload(const State& state) {
 }
 
 void TaitMethod::read(State& state) {
-  const std::size_t n = model_->liquid_count;
+  const std::size_t n = model().liquid_count;
   accelerations_.resize(n);
   read_.read(program_, now_.motion, n);
   program_.read(now_.acceleration, std::span<Float4>(accelerations_));
   if (solids_) solids_->read();
   read_.copy_to(state.now);
   // No force acts on solids that are held.
-  state.forces.particle.assign(model_->particle_count, Vec3::Zero());
-  state.forces.rigid_force.assign(model_->rigid_bodies.size(), Vec3::Zero());
-  state.forces.rigid_torque.assign(model_->rigid_bodies.size(), Vec3::Zero());
+  state.forces.particle.assign(model().particle_count, Vec3::Zero());
+  state.forces.rigid_force.assign(model().rigid_bodies.size(), Vec3::Zero());
+  state.forces.rigid_torque.assign(model().rigid_bodies.size(), Vec3::Zero());
   for (std::size_t i = 0; i < n; ++i) {
     const Float4& a = accelerations_[i];
     state.forces.particle[i] =
-        model_->mass[i] *
+        model().mass[i] *
         Vec3(static_cast<Real>(a.x), static_cast<Real>(a.y), static_cast<Real>(a.z));
   }
   state.forces_current = true;
-  state.bound = model_->damping.any ? find_bound_of_bodies(*model_) : Oscillation{};
+  if (adaptive_) state.history = adaptive_->history;
+  state.bound = model().damping.any ? find_bound_of_bodies(model()) : Oscillation{};
   if (!solids_) return;
   solids_->copy_to(state);
-  if (model_->damping.any) state.bound = solids_->bound();
+  if (model().damping.any) state.bound = solids_->bound();
 }
 
 void TaitMethod::copy(const TaitState& from, TaitState& to) {
   to.motion.copy_from(from.motion);
-  program_.copy(from.acceleration, to.acceleration, model_->liquid_count * sizeof(Float4));
+  program_.copy(from.acceleration, to.acceleration, model().liquid_count * sizeof(Float4));
 }
 
 void TaitMethod::save() {
   copy(now_, start_);
   if (solids_) solids_->save();
+  if (adaptive_) adaptive_->saved_history = adaptive_->history;
 }
 
 void TaitMethod::restore() {
   copy(start_, now_);
   if (solids_) solids_->restore();
+  if (adaptive_) adaptive_->history = adaptive_->saved_history;
 }
 
-void TaitMethod::evaluate(const StepMoment& start, Real end) {
+void TaitMethod::evaluate_liquid(const LiquidParameters& p) {
   DeviceParticles& s = particles_;
-  StepMoment at_end = start;
-  at_end.time = end;
-  at_end.prediction = model_->damping.any ? start.opening : 0;
-  const LiquidParameters p = geometry_.at(*model_, at_end);
-  if (solids_) solids_->move(start, end, model_->scene.numerics.step, s.counters.buffer);
   s.sort_after("move", p, now_.motion.position, now_.motion.velocity, now_.acceleration);
   program_.run("find_pressure", s.count(), p, s.cells.begins, s.sorted_place, s.sorted_motion,
                s.density, s.neighbour_counts, s.neighbours);
   s.find_solid_pressure(p);
   program_.run("find_acceleration", s.count(), p, s.cells.begins, s.order, s.sorted_place,
                s.sorted_motion, s.neighbour_counts, s.neighbours, now_.acceleration);
+  if (surface_) surface_->add_forces(p, s, now_.acceleration);
+  if (cohesion_) cohesion_->add_forces(p, s, now_.acceleration);
+}
+
+void TaitMethod::evaluate(const StepMoment& start, Real end) {
+  StepMoment at_end = start;
+  at_end.time = end;
+  // No damping of the liquid needs a solve.
+  at_end.prediction = model().damping.any ? start.opening : 0;
+  const LiquidParameters p = geometry_.at(model(), at_end);
+  if (solids_) solids_->move(start, end, model().scene.numerics.step, particles_.counters.buffer);
+  evaluate_liquid(p);
   if (solids_) find_forces_on_solids(p, end);
 }
 
@@ -150,53 +208,78 @@ void TaitMethod::find_forces_on_solids(const LiquidParameters& p, Real end) {
   solids_->find_forces(end);
   program_.run("add_forces_on_solids", s.count(), p, s.cells.begins, s.order, s.sorted_place,
                s.sorted_motion, s.neighbour_counts, s.neighbours, solids_->force());
+  if (cohesion_) cohesion_->add_forces_on_solids(p, s, solids_->force());
   solids_->gather();
 }
 
-void TaitMethod::take_step(StepMoment moment, Real end, AdvanceReport& report) {
-  const bool must_solve = solids_ && solids_->must_solve(moment.drift);
-  // Forces on solids with a solve depend on the velocities before it; see evaluate_at_end().
-  moment.prediction = model_->damping.any && !must_solve ? moment.opening : 0;
-  evaluate(moment, end);
-  if (must_solve) report.iterations.damping += solids_->solve_damping(end, moment.opening);
-}
-
 void TaitMethod::finish(const StepMoment& moment) {
-  program_.run("finish", model_->liquid_count, geometry_.at(*model_, moment), now_.motion.position,
-               now_.motion.velocity, now_.acceleration, particles_.counters.buffer);
-  if (solids_) solids_->finish(moment, model_->scene.numerics.step, particles_.counters.buffer);
+  LiquidParameters p = geometry_.at(model(), moment);
+  p.greatest_speed2 = geometry_.greatest_speed2(2 * moment.closing);  // a kick lasts half a step
+  program_.run("finish", model().liquid_count, p, now_.motion.position, now_.motion.velocity,
+               now_.acceleration, particles_.counters.buffer);
+  if (solids_) solids_->finish(moment, model().scene.numerics.step, particles_.counters.buffer);
 }
 
-bool TaitMethod::take_steps(const EngineInput& input, std::uint32_t steps) {
-  const State& state = input.state;
-  const Real dt = model_->scene.numerics.step;
-  const auto time = [&](std::uint32_t s) { return static_cast<Real>(state.step_count + s) * dt; };
-  if (!input.continues) upload(state);
-  save();
-  particles_.counters.clear();
-  AdvanceReport report = input.report;
-  if (!input.continues && !state.forces_current) {
-    evaluate({time(0), 0, 0, 0, 0}, time(0));
-    report.count_evaluation(model_->particle_count);
+Real TaitMethod::observed_rate() {
+  const TaitState& before = adaptive_->before;
+  return adaptive_->control.observed_rate(
+      model(), {before.motion.position, now_.motion.position, before.acceleration,
+                now_.acceleration, particles_.weight()});
+}
+
+Real TaitMethod::probe_start(Real start, Real dt, AdvanceReport& report) {
+  evaluate_at_start(start, report);
+  copy(now_, adaptive_->before);
+  LiquidParameters moved = geometry_.at(model(), {start + dt, 0, dt / 2, dt, 0});
+  remove_walls(moved);
+  evaluate_liquid(moved);
+  report.count_evaluation(model().particle_count);
+  const Real rate = observed_rate();
+  copy(adaptive_->before, now_);
+  return rate;
+}
+
+Real TaitMethod::find_allowed_step(Real start, AdvanceReport& report) {
+  const Real step =
+      adaptive_->control.least_step_by_forces(model(), now_.motion.velocity, now_.acceleration);
+  StepHistory& history = adaptive_->history;
+  if (history.step == 0) {
+    const Real nominal = model().scene.numerics.step;
+    history.observed_rate = probe_start(start, kProbeShare * std::min(step, nominal), report);
   }
-  StepMoment moment{0, 0, dt / 2, dt, 0};
-  for (std::uint32_t s = 0; s < steps; ++s) {
-    moment.time = time(s);
-    take_step(moment, moment.time + dt, report);
-    report.count_evaluation(model_->particle_count);
-    moment.closing = dt / 2;
-  }
-  moment.time = time(steps);
-  finish(moment);
-  const Counters counters = particles_.counters.read();
-  if (counters.faults != 0) {
-    restore();
-    return false;
-  }
-  report.count_steps(steps, dt, dt);
-  report.wall_stops += static_cast<std::uint64_t>(counters.stops);
-  input.report = std::move(report);
+  return limit_by_rate(model(), step, history.observed_rate);
+}
+
+bool TaitMethod::take_part(const StepPart& part, AdvanceReport& report) {
+  const Real dt = part.length;
+  copy(now_, adaptive_->before);
+  take_step({part.start, 0, dt / 2, dt, 0}, part.end, report);
+  finish({part.end, dt / 2, 0, 0, 0});
+  report.count_steps(1, dt, dt);
+  if (particles_.counters.read().faults != 0) return false;
+  adaptive_->history.observed_rate = observed_rate();
   return true;
+}
+
+bool TaitMethod::take_nominal_steps(const NominalSteps& steps, AdvanceReport& report) {
+  if (!adaptive_) return VerletMethod::take_nominal_steps(steps, report);
+  StepHistory& history = adaptive_->history;
+  bool has_forces = steps.has_forces;
+  bool is_valid = true;
+  for (std::uint32_t s = 0; s < steps.count && is_valid; ++s) {
+    is_valid = take_varied_step(
+        {steps.time(s), steps.time(s + 1), steps.step}, history,
+        [&](Real start) {
+          has_forces = has_forces || history.step == 0;  // after the probe
+          return find_allowed_step(start, report);
+        },
+        [&](const StepPart& part) {
+          if (!has_forces) evaluate_at_start(part.start, report);
+          has_forces = true;
+          return take_part(part, report);
+        });
+  }
+  return is_valid;
 }
 
 }  // namespace
@@ -205,7 +288,11 @@ std::size_t bytes_for_tait(const Model& model) {
   const LiquidGeometry geometry(model, guard_bounds(model));
   const bool moves = solids_move(model);
   return DeviceParticles::bytes_for(model, geometry, moves) +
-         2 * model.liquid_count * TaitState::kBytes + (moves ? DeviceSolids::bytes_for(model) : 0);
+         2 * model.liquid_count * TaitState::kBytes +
+         (is_adaptive(model) ? AdaptiveSteps::bytes_for(model) : 0) +
+         (model.has_surface_tension ? DeviceSurface::bytes_for(model) : 0) +
+         (model.cohesion ? DeviceCohesion::bytes_for(model) : 0) +
+         (moves ? DeviceSolids::bytes_for(model) : 0);
 }
 
 std::unique_ptr<DeviceMethod> make_tait_method(Program& program,

@@ -44,7 +44,7 @@ Vec3 to_point(const SearchCoordinates& places, const std::array<float, 3>& p) {
 }
 
 /// Provides space for `wanted` entries.
-void make_room(std::vector<Index>& found, std::size_t wanted) {
+void make_room_for_found(std::vector<Index>& found, std::size_t wanted) {
   if (found.size() < wanted) resize_closely(found, wanted);
 }
 
@@ -95,14 +95,14 @@ class CandidateSearch {
       const CullSlots slots{places_.x.data() + group.first, places_.y.data() + group.first,
                             places_.z.data() + group.first, group.first};
       const auto cull = [&](Index begin, Index end) {
-        make_room(found, count + (end - begin) + lanes_);
+        make_room_for_found(found, count + (end - begin) + lanes_);
         count = cull_(slots, begin, end, near, found.data(), count);
       };
       group.grid->for_each_run(low.array() - reach, high.array() + reach, cull);
     }
     cluster.has_mirrored =
         count > cluster.first_candidate && found[count - 1] >= search_.first_mirrored;
-    make_room(found, count + lanes_);
+    make_room_for_found(found, count + lanes_);
     while ((count - cluster.first_candidate) % lanes_ != 0) found[count++] = search_.padding;
     cluster.candidate_count = static_cast<Index>(count - cluster.first_candidate);
     VAT_CHECK(cluster.candidate_count % lanes_ == 0 && count <= found.size());

@@ -160,6 +160,22 @@ void remove_other_liquids(StepContext& c) {
 
 }  // namespace
 
+SurfaceBalance balance_of(const SurfaceSum& sum, bool balances_torque) {
+  SurfaceBalance balance;
+  if (!(sum.share > 0)) return balance;
+  balance.center = sum.moment / sum.share;
+  balance.excess = sum.force / sum.share;
+  if (!balances_torque) return balance;
+  const Vec3& center = balance.center;
+  const Mat3 second = sum.second_moment - sum.share * center * center.transpose();
+  const Mat3 inertia = second.trace() * Mat3::Identity() - second;
+  const Eigen::LDLT<Mat3> solver(inertia);
+  // For points on a line, there is no torque along it.
+  const bool is_line = !(solver.vectorD().minCoeff() > 1e-9 * inertia.trace());
+  if (!is_line) balance.turn = solver.solve(sum.torque - center.cross(sum.force));
+  return balance;
+}
+
 void find_surface(StepContext& c) {
   LiquidScratch& buffers = c.work.of<LiquidScratch>();
   std::vector<SurfaceRecord>& surface = c.work.of<SurfaceScratch>().surface;
@@ -240,19 +256,10 @@ SurfaceSum sum_surface(StepContext& c, const std::vector<Vec3>& force) {
 void balance(StepContext& c, std::vector<Vec3>& force) {
   const SurfaceSum all = sum_surface(c, force);
   if (!(all.share > 0)) return;
-  const Vec3 center = all.moment / all.share;
-  const Vec3 excess = all.force / all.share;
-  Vec3 turn = Vec3::Zero();
-  if (!c.model.periodic.any()) {
-    const Mat3 second = all.second_moment - all.share * center * center.transpose();
-    const Mat3 inertia = second.trace() * Mat3::Identity() - second;
-    const Eigen::LDLT<Mat3> solver(inertia);
-    // For points on a line, there is no torque along it.
-    const bool is_line = !(solver.vectorD().minCoeff() > 1e-9 * inertia.trace());
-    if (!is_line) turn = solver.solve(all.torque - center.cross(all.force));
-  }
+  const SurfaceBalance motion = balance_of(all, !c.model.periodic.any());
   for_each_point(c, [&](const SurfacePoint& at) {
-    force[at.slot] -= share_of(at) * (excess + turn.cross(at.position() - center));
+    force[at.slot] -=
+        share_of(at) * (motion.excess + motion.turn.cross(at.position() - motion.center));
   });
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/liquid/surface/scratch.h"
+
 namespace vat {
 
 struct StepContext;
@@ -41,6 +43,18 @@ struct StepContext;
 /// surface. If the liquid touches neither walls nor solids, the sum is subtracted, distributed over
 /// the whole surface. The subtraction conserves momentum and, except in a periodic world, angular
 /// momentum. The curvature forces affect solids only through the pressure of the liquid.
+
+/// A rigid motion of the surface. A particle with the weight sigma times area at x gets the force
+/// -weight (excess + turn x (x - center)).
+struct SurfaceBalance {
+  Vec3 excess = Vec3::Zero();
+  Vec3 turn = Vec3::Zero();
+  Vec3 center = Vec3::Zero();
+};
+
+/// Returns the motion whose forces make the sum of curvature forces zero and, if `balances_torque`
+/// is set, that of their torques.
+SurfaceBalance balance_of(const SurfaceSum& sum, bool balances_torque);
 
 /// Stage that computes g_i and max(0, 1 - s_i).
 void find_surface(StepContext& context);

@@ -35,13 +35,17 @@ SolverResult result_of(const char* problem, const char* error_name, Real error,
       of.density.mean, of.density.greatest, of.run.seconds(), of.run.steps(), of.run.state_hash()};
 }
 
+StartRun starter_with(TaskRunner* runner) {
+  return [runner](const Scene& scene) { return Run(scene, runner); };
+}
+
 SolverResult solve_column(PressureSolver solver, int layers, TaskRunner* runner) {
-  const ColumnRun column = run_column(solver, layers, runner);
+  const ColumnRun column = run_column(solver, layers, starter_with(runner));
   return result_of(kColumn, "pressure, L2", column.pressure_error(), solver, layers, column);
 }
 
 SolverResult solve_dam_break(PressureSolver solver, int layers, TaskRunner* runner) {
-  const DamBreakRun result = run_dam_break(solver, layers, runner);
+  const DamBreakRun result = run_dam_break(solver, layers, starter_with(runner));
   return result_of(
       kDamBreak, "front and height, RMS",
       std::hypot(best_front_error(result.seen.front), height_error(result.seen.height)), solver,

@@ -70,6 +70,7 @@ constexpr Content kContents[] = {
     {"steps", "accuracy", "control", steps_table},
     {"counts", "stability", "stability", counts_table},
     {"devices", "speed", "speed", devices_table},
+    {"device-cases", "validate", "device", device_cases_table},
     {"race", "race", "race", race_table},
     {"durability", "durability", "durability", durability_table},
     {"recovery", "recovery", "recovery", recovery_table},

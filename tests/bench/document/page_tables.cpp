@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -233,6 +234,35 @@ Table race_table(const Json& race) {
                           cell_number(row, "SPlisHSPlasH [s/s]"),
                           cell_number(row, "SPlisHSPlasH / vat"),
                           cell_number(row, "density error of vat [%]") + " %", machine_cell(row)});
+  }
+  return table;
+}
+
+Table device_cases_table(const Json& rows) {
+  Table table{{"case", "rows on the device", "metric closest to its tolerance", "error",
+               "error of the CPU", "reference and tolerance", "refused"},
+              {}};
+  for (const std::vector<Json>& group : by_case(rows)) {
+    std::vector<Json> computed;
+    std::set<std::string> reasons;
+    for (const Json& row : group) {
+      const std::string reason = cell_text(row, "refused");
+      reason.empty() ? computed.push_back(row) : void(reasons.insert(reason));
+    }
+    std::string refused;
+    for (const std::string& reason : reasons) refused += (refused.empty() ? "" : ", ") + reason;
+    const std::string count =
+        std::to_string(computed.size()) + " of " + std::to_string(group.size());
+    if (computed.empty()) {
+      table.rows.push_back({cell_text(group[0], "case"), count, "–", "–", "–", "–", refused});
+      continue;
+    }
+    const Json& main = *std::ranges::max_element(computed, [](const Json& a, const Json& b) {
+      return std::pair(is_judged(a), share(a)) < std::pair(is_judged(b), share(b));
+    });
+    table.rows.push_back({cell_text(main, "case"), count, cell_text(main, "metric"),
+                          cell_number(main, "error"), cell_number(main, "error of the CPU"),
+                          cell_text(main, "must be"), refused.empty() ? "–" : refused});
   }
   return table;
 }

@@ -45,6 +45,9 @@ Table counts_table(const Json& stability);
 /// Returns one row per race: times of both programs, their ratio, and the machine.
 Table race_table(const Json& race);
 
+/// Returns one row for each case of the validation on a device, with the errors of the metric
+/// closest to its tolerance, and the reasons why rows are not on the device.
+Table device_cases_table(const Json& rows);
 /// Returns one row for each case on a device, with the times on most threads of the CPU.
 Table devices_table(const Json& speed);
 

@@ -198,13 +198,8 @@ TEST(Device, RefusesFeaturesThatItLacks) {
       {"/pair_precision", [](Scene& s) { s.pair_precision = PairPrecision::double_precision; }},
       {"/numerics/integrator",
        [](Scene& s) { s.numerics.integrator = IntegratorId::symplectic_euler; }},
-      {"/numerics/control", [](Scene& s) { s.numerics.control = StepControl::adaptive; }},
+      {"/numerics/control", [](Scene& s) { s.numerics.control = StepControl::local; }},
       {"/numerics/step", [](Scene& s) { s.materials[0].liquid->viscosity = 200; }},
-      {"/materials",
-       [](Scene& s) {
-         s.materials[0].liquid->surface_tension = 0.07;
-         s.materials[0].liquid->support_radius = 2.5 * kSpacing;
-       }},
       {"/emitters",
        [](Scene& s) {
          s.emitters.push_back({.name = "tap",

@@ -76,23 +76,8 @@ TEST(IncompressibleDevice, HasTheAccuracyOfTheCpu) {
   expect_accuracy_of_cpu(scene, kScenes, kSteps);
 }
 
-// The steps are those of the CPU, because their limits differ by rounding only.
 TEST(IncompressibleDevice, ChoosesTheStepsOfTheCpu) {
-  const Scene scene = make_adaptive();
-  Simulation device = make_on_device(scene);
-  Simulation cpu = make_simulation(scene);
-  Real least = scene.numerics.step;
-  for (int tick = 0; tick < 12; ++tick) {
-    const AdvanceReport report = device.advance(1);
-    const AdvanceReport expected = cpu.advance(1);
-    EXPECT_EQ(report.device_steps, 1U);
-    EXPECT_EQ(report.steps, expected.steps) << tick;
-    EXPECT_EQ(report.force_evaluations, expected.force_evaluations) << tick;
-    EXPECT_NEAR(report.least_step, expected.least_step, 1e-12) << tick;
-    EXPECT_NEAR(report.greatest_step, expected.greatest_step, 1e-12) << tick;
-    least = std::min(least, report.least_step);
-  }
-  EXPECT_LT(least, scene.numerics.step / 4) << "the motion limits steps";
+  expect_adaptive_steps_of_cpu(make_adaptive(), 12);
 }
 
 // The nominal step does not resolve the viscosity, but the weight of the liquid shortens all steps.
@@ -324,6 +309,11 @@ TEST(IncompressibleDevice, RefusesFeaturesThatItLacks) {
       {"/numerics/control", [](Scene& s) { s.numerics.control = StepControl::local; }},
       {"/numerics/step", [](Scene& s) { s.materials[0].liquid->viscosity = 200; }},
       {"/kernel", [](Scene& s) { s.kernel = KernelId::cubic_spline; }},
+      {"/materials",
+       [](Scene& s) {
+         s.materials[0].liquid->surface_tension = 0.07;
+         s.materials[0].liquid->support_radius = 2.5 * kSpacing;
+       }},
       {"/bodies/1/kind",
        [](Scene& s) {
          s.bodies.push_back(make_body("sponge", BodyKind::deformable, "water",

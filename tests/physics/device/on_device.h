@@ -128,10 +128,10 @@ inline void set_no_slip(Scene& scene) {
   scene.vat->walls[4].velocity = {1, 0, 0};
 }
 
-/// Expects that the device differs from double precision by at most three times as much as the CPU
-/// with single precision.
+/// Expects that the device differs from double precision by at most `ratio` times as much as the
+/// CPU with single precision.
 inline void expect_accuracy_of_cpu(const Scene& common, std::span<const SceneCase> cases,
-                                   std::uint32_t steps) {
+                                   std::uint32_t steps, Real ratio = 3) {
   for (const SceneCase& one : cases) {
     SCOPED_TRACE(one.name);
     Scene scene = common;
@@ -148,9 +148,28 @@ inline void expect_accuracy_of_cpu(const Scene& common, std::span<const SceneCas
     EXPECT_EQ(report.force_evaluations, expected.force_evaluations);
     EXPECT_EQ(report.wall_stops, expected.wall_stops);
     EXPECT_EQ(report.iterations.damping, expected.iterations.damping);
-    EXPECT_LT(difference(device, exact), 3 * difference(single, exact));
+    EXPECT_LT(difference(device, exact), ratio * difference(single, exact));
     EXPECT_GT(difference(device, make_simulation(scene)), 1e-4) << "it moves";
   }
+}
+
+/// Expects that the device takes the adaptive steps of the CPU, because their limits differ by
+/// rounding only. The motion must limit a step to less than a quarter of the nominal step.
+inline void expect_adaptive_steps_of_cpu(const Scene& scene, int ticks) {
+  Simulation device = make_on_device(scene);
+  Simulation cpu = make_simulation(scene);
+  Real least = scene.numerics.step;
+  for (int tick = 0; tick < ticks; ++tick) {
+    const AdvanceReport report = device.advance(1);
+    const AdvanceReport expected = cpu.advance(1);
+    EXPECT_EQ(report.device_steps, 1U);
+    EXPECT_EQ(report.steps, expected.steps) << tick;
+    EXPECT_EQ(report.force_evaluations, expected.force_evaluations) << tick;
+    EXPECT_NEAR(report.least_step, expected.least_step, 1e-12) << tick;
+    EXPECT_NEAR(report.greatest_step, expected.greatest_step, 1e-12) << tick;
+    least = std::min(least, report.least_step);
+  }
+  EXPECT_LT(least, scene.numerics.step / 4) << "the motion limits steps";
 }
 
 /// Expects that the CPU takes the steps of a scene, because one of them fails, with the same

@@ -25,7 +25,7 @@ struct TaitPool {
 };
 
 /// Returns a narrow pool for a quick run. A ball at rest is not affected by the walls.
-TaitPool pool_at_rest(const Sheet& sheet, Real depth) {
+TaitPool pool_at_rest(Sheet& sheet, Real depth) {
   return {sheet.quick() ? 0.35 : 0.5, depth};
 }
 

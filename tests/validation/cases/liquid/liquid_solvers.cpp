@@ -61,9 +61,13 @@ Scene make_column(PressureSolver solver, Real spacing) {
   return scene;
 }
 
+StartRun starter_of(Sheet& sheet) {
+  return [&sheet](const Scene& scene) { return sheet.start(scene); };
+}
+
 void check_solver_column(Sheet& sheet, int layers) {
   const std::string of = ", " + std::to_string(layers) + " layers";
-  const ColumnRun column = run_column(PressureSolver::incompressible, layers, sheet.runner());
+  const ColumnRun column = run_column(PressureSolver::incompressible, layers, starter_of(sheet));
   sheet.add("relative L2 error of the pressure" + of, 0.06, column.pressure_error(),
             at_most(kTarget), column.run);
   const Line line =
@@ -84,7 +88,7 @@ void check_columns(Sheet& sheet) {
 // LIQ-15.
 
 void check_dam_break(Sheet& sheet, PressureSolver solver, int layers) {
-  const DamBreakRun result = run_dam_break(solver, layers, sheet.runner());
+  const DamBreakRun result = run_dam_break(solver, layers, starter_of(sheet));
   const std::string of =
       std::string(", ") + to_string(solver) + ", a/dx = " + std::to_string(layers);
   const bool is_tait = solver == PressureSolver::tait;
@@ -150,19 +154,19 @@ void DensityError::add(const Diagnostics& now) {
   ++samples;
 }
 
-DamBreakRun run_dam_break(PressureSolver solver, int layers, TaskRunner* runner) {
+DamBreakRun run_dam_break(PressureSolver solver, int layers, const StartRun& start) {
   constexpr Real kWidth = 0.2;
   const Real spacing = kWidth / layers;
   const Real speed = std::sqrt(2 * kGravity * 2 * kWidth);
-  DamBreakRun result{
-      {Run(with_solver(load_scene("LIQ-15"), solver, spacing, speed, 0.005), runner), {}}, {}};
+  DamBreakRun result{{start(with_solver(load_scene("LIQ-15"), solver, spacing, speed, 0.005)), {}},
+                     {}};
   result.seen =
       watch_dam_break(result.run, spacing, [&] { result.density.add(result.run.diagnostics()); });
   return result;
 }
 
-ColumnRun run_column(PressureSolver solver, int layers, TaskRunner* runner) {
-  ColumnRun column{{Run(make_column(solver, kSolverDepth / layers), runner), {}}, {}, {}};
+ColumnRun run_column(PressureSolver solver, int layers, const StartRun& start) {
+  ColumnRun column{{start(make_column(solver, kSolverDepth / layers)), {}}, {}, {}};
   Run& run = column.run;
   run.advance_to(0.02);  // the first step separates particles that are too close
   run.observe_until(2, 0.02, [&] { column.density.add(run.diagnostics()); });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "core/scene/scene.h"
@@ -20,6 +21,9 @@ struct DensityError {
   void add(const Diagnostics& now);
 };
 
+/// Starts a run of a scene.
+using StartRun = std::function<Run(const Scene&)>;
+
 /// A run with one solver, and its density errors.
 struct SolverRun {
   Run run;
@@ -30,7 +34,7 @@ struct SolverRun {
 struct DamBreakRun : SolverRun {
   DamBreak seen;
 };
-DamBreakRun run_dam_break(PressureSolver solver, int layers, TaskRunner* runner);
+DamBreakRun run_dam_break(PressureSolver solver, int layers, const StartRun& start);
 
 /// A column at rest (LIQ-3), `layers` particles high. Heights and pressures of its particles are
 /// means over the last of three seconds.
@@ -43,6 +47,6 @@ struct ColumnRun : SolverRun {
   /// Returns the maximum speed at the end, divided by sqrt(g H).
   Real residual_speed() const;
 };
-ColumnRun run_column(PressureSolver solver, int layers, TaskRunner* runner);
+ColumnRun run_column(PressureSolver solver, int layers, const StartRun& start);
 
 }  // namespace vat::validation

@@ -22,7 +22,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void sum_velocities(
 
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_mean(
     const int count, const int groups, const int result, global const double4* partial,
-    global Motion* motion, global double2* results) {
+    global Motion* motion, global double4* results) {
   local double4 sums[GROUP];
   const double4 total = sum_partial(sums, groups, partial);
   if (get_local_id(0) != 0) return;
@@ -30,6 +30,56 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_mean(
   motion->mean[1] = total.y / (double)count;
   motion->mean[2] = total.z / (double)count;
   results[result].x = total.w;
+}
+
+double4 greatest_of(double4 a, double4 b) {
+  return (double4)(greater(a.x, b.x), greater(a.y, b.y), greater(a.z, b.z), greater(a.w, b.w));
+}
+
+// The maxima of the components over the group.
+double4 maximum_of_group(local double4* maxima, double4 own) {
+  const int t = get_local_id(0);
+  maxima[t] = own;
+  barrier(CLK_LOCAL_MEM_FENCE);
+  for (int width = GROUP / 2; width > 0; width /= 2) {
+    if (t < width) maxima[t] = greatest_of(maxima[t], maxima[t + width]);
+    barrier(CLK_LOCAL_MEM_FENCE);
+  }
+  return maxima[0];
+}
+
+// The greatest motion of a body: squares of the velocity relative to the mean and of the
+// acceleration, and 2 way / travel_time(way). `four_ways` is 4 way.
+kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_greatest_motion(
+    const int first, const int count, const double four_ways, global const double* velocity,
+    global const float4* acceleration, global const Motion* motion, global double4* partial) {
+  local double4 maxima[GROUP];
+  double4 own = 0;
+  if ((int)get_global_id(0) < count) {
+    const int i = first + get_global_id(0);
+    const float4 a4 = acceleration[i];
+    const double a[3] = {a4.x, a4.y, a4.z};
+    double speed2 = 0;
+    for (int k = 0; k < 3; ++k) {
+      const double v = velocity[3 * i + k];
+      const double relative = v - motion->mean[k];
+      speed2 += v * v;
+      own.x += relative * relative;
+      own.y += a[k] * a[k];
+    }
+    own.z = sqrt(speed2) + sqrt(speed2 + four_ways * sqrt(own.y));
+  }
+  const double4 greatest = maximum_of_group(maxima, own);
+  if (get_local_id(0) == 0) partial[get_group_id(0)] = greatest;
+}
+
+kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void end_greatest_motion(
+    const int groups, const int result, global const double4* partial, global double4* results) {
+  local double4 maxima[GROUP];
+  double4 own = 0;
+  for (int n = get_local_id(0); n < groups; n += GROUP) own = greatest_of(own, partial[n]);
+  const double4 greatest = maximum_of_group(maxima, own);
+  if (get_local_id(0) == 0) results[result] = greatest;
 }
 
 // Squares of the velocities of a body relative to the mean.
@@ -51,7 +101,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_relative_spe
 // Stores the greatest speed of a body, and begins the selection of the pressure of a rank.
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void begin_selection(
     const int groups, const int rank, const int result, global const double4* partial,
-    global Motion* motion, global double2* results, global int* histogram) {
+    global Motion* motion, global double4* results, global int* histogram) {
   local double4 sums[GROUP];
   const double4 total = sum_partial(sums, groups, partial);
   histogram[get_local_id(0)] = 0;
@@ -88,7 +138,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void count_digits(
 // Selects the digit at `shift` of the key with the rank. The last digit completes the key.
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void select_digit(
     const int shift, const int result, global int* histogram, global Motion* motion,
-    global double2* results) {
+    global double4* results) {
   const int t = get_local_id(0);
   if (t == 0) {
     int rank = motion->rank;
@@ -137,7 +187,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void sum_changes(
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void end_changes(
     const int groups, const double scale, const int is_force, const int is_square,
     const int result, global const double4* partial, global Motion* motion,
-    global double2* results) {
+    global double4* results) {
   local double4 sums[GROUP];
   const double4 total = sum_partial(sums, groups, partial);
   if (get_local_id(0) != 0) return;

@@ -1,9 +1,9 @@
-#include "core/device/incompressible/device_step_control.h"
+#include "core/device/liquid/device_step_control.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "core/device/incompressible/device_solve.h"
+#include "core/device/common/kernel_values.h"
 #include "core/evaluation/motion_probe.h"
 #include "core/limits.h"
 #include "core/stepping/control/step_control.h"
@@ -47,7 +47,7 @@ DeviceStepControl::DeviceStepControl(Program& program, const Model& model, const
       travel_(guard_bounds(model).travel[model.body[0]]),
       own_step_(find_own_step(model)),
       motion_(program, kMotionBytes),
-      results_(program, (model.bodies.size() + 1) * sizeof(Double2)),
+      results_(program, (model.bodies.size() + 1) * sizeof(Double4)),
       histogram_(program, kDigits * sizeof(std::int32_t)) {
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const ModelBody& body = model.bodies[b];
@@ -56,7 +56,7 @@ DeviceStepControl::DeviceStepControl(Program& program, const Model& model, const
 }
 
 std::size_t DeviceStepControl::bytes_for(const Model& model) {
-  return kMotionBytes + (model.bodies.size() + 1) * sizeof(Double2) +
+  return kMotionBytes + (model.bodies.size() + 1) * sizeof(Double4) +
          kDigits * sizeof(std::int32_t);
 }
 
@@ -73,14 +73,17 @@ void DeviceStepControl::select_pressure(const ModelBody& body, std::int32_t resu
   }
 }
 
+void DeviceStepControl::find_mean_velocity(std::size_t particles, const Buffer& velocity) {
+  const auto count = static_cast<std::int32_t>(particles);
+  const auto last = static_cast<std::int32_t>(bodies_.size());
+  program_.run("sum_velocities", particles, count, velocity, partial_);
+  program_.run("find_mean", Program::kGroup, count, groups_of(particles), last, partial_, motion_,
+               results_);
+}
+
 Real DeviceStepControl::least_step(const Model& model, const Buffer& velocity,
                                    const Buffer& pressure) {
-  const std::size_t n = model.liquid_count;
-  const auto count = static_cast<std::int32_t>(n);
-  const auto last = static_cast<std::int32_t>(bodies_.size());
-  program_.run("sum_velocities", n, count, velocity, partial_);
-  program_.run("find_mean", Program::kGroup, count, groups_of(n), last, partial_, motion_,
-               results_);
+  find_mean_velocity(model.liquid_count, velocity);
   std::int32_t result = 0;
   for (const std::size_t b : bodies_) {
     const ModelBody& body = model.bodies[b];
@@ -88,11 +91,34 @@ Real DeviceStepControl::least_step(const Model& model, const Buffer& velocity,
                  velocity, motion_, partial_);
     select_pressure(body, result++, pressure);
   }
-  const std::vector<Double2> results = read_results();
+  const std::vector<Double4> results = read_results();
   Real step = step_of_particles(own_step_, travel_, std::sqrt(results.back().x));
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     const LiquidMotion motion{std::sqrt(results[k].x), 0, results[k].y};
     step = std::min(step, step_of_liquid(model, bodies_[k], motion));
+  }
+  return step;
+}
+
+Real DeviceStepControl::least_step_by_forces(const Model& model, const Buffer& velocity,
+                                             const Buffer& acceleration) {
+  find_mean_velocity(model.liquid_count, velocity);
+  const Real way = kTravelShare * travel_;
+  std::int32_t result = 0;
+  for (const std::size_t b : bodies_) {
+    const ModelBody& body = model.bodies[b];
+    const std::size_t n = body.particles.size();
+    program_.run("find_greatest_motion", n, first_of(body), count_of(body), 4 * way, velocity,
+                 acceleration, motion_, partial_);
+    program_.run("end_greatest_motion", Program::kGroup, groups_of(n), result++, partial_,
+                 results_);
+  }
+  const std::vector<Double4> results = read_results();
+  Real step = own_step_;
+  for (std::size_t k = 0; k < bodies_.size(); ++k) {
+    const Double4& greatest = results[k];
+    const LiquidMotion motion{std::sqrt(greatest.x), std::sqrt(greatest.y), 0};
+    step = std::min({step, 2 * way / greatest.z, step_of_liquid(model, bodies_[k], motion)});
   }
   return step;
 }
@@ -116,7 +142,7 @@ Real DeviceStepControl::observed_rate(const Model& model, const ProbedMotion& mo
     }
     ++result;
   }
-  const std::vector<Double2> results = read_results();
+  const std::vector<Double4> results = read_results();
   Real greatest = 0;
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     const ModelBody& body = model.bodies[bodies_[k]];
@@ -127,8 +153,8 @@ Real DeviceStepControl::observed_rate(const Model& model, const ProbedMotion& mo
   return greatest;
 }
 
-std::vector<Double2> DeviceStepControl::read_results() {
-  std::vector<Double2> results(bodies_.size() + 1);
+std::vector<Double4> DeviceStepControl::read_results() {
+  std::vector<Double4> results(bodies_.size() + 1);
   program_.read(results_, std::span(results));
   return results;
 }
