@@ -42,12 +42,14 @@ async function inked(chart: number): Promise<number> {
     .locator('#curves-place .chart canvas')
     .nth(chart)
     .evaluate((canvas: HTMLCanvasElement) => {
+      // A thin line between two rows is faint in both.
+      const kFaint = 20;
       const { data } = canvas.getContext('2d')!.getImageData(0, 0, canvas.width, canvas.height);
       let count = 0;
       for (let i = 0; i < data.length; i += 4) {
         const strongest = Math.max(data[i]!, data[i + 1]!, data[i + 2]!);
         const weakest = Math.min(data[i]!, data[i + 1]!, data[i + 2]!);
-        if (data[i + 3]! > 128 && strongest - weakest > 70) ++count;
+        if (data[i + 3]! > kFaint && strongest - weakest > 70) ++count;
       }
       return count;
     });
