@@ -46,6 +46,28 @@ it('changes the constants of a material, within their range, and restores them',
   await expect.poll(() => page.inputValue(field), kInTime).toBe(String(before));
 });
 
+it('keeps a change whose result follows the next change', async () => {
+  await visit('dam-break');
+  await visits.viewer.page.evaluate(
+    (edits) => {
+      for (const [field, value] of edits) {
+        const input = document.querySelector<HTMLInputElement>(field)!;
+        input.value = value;
+        input.dispatchEvent(new Event('change'));
+      }
+    },
+    [
+      ['#material-liquid-viscosity', '2'],
+      ['#material-density', '900'],
+    ] as const,
+  );
+  const constants = async (): Promise<unknown> => {
+    const { liquid, density } = (await visits.scene()).materials.find(({ liquid }) => liquid)!;
+    return [liquid!.viscosity, density];
+  };
+  await expect.poll(constants, kInTime).toEqual([2, 900]);
+});
+
 it('changes the appearance of a material, which is drawn, and restores it', async () => {
   await visit('rigid-stack');
   const { page } = visits.viewer;

@@ -23,11 +23,14 @@ export class AppearanceForm {
   private readonly reset: HTMLButtonElement;
   private readonly fault = make('p', { className: 'fault', role: 'alert', hidden: true });
   private readonly fields: readonly (AppearanceField & { input: ValueField })[];
-  private material: SceneMaterial | undefined;
   private initial: SceneMaterial | undefined;
 
   /** `set` replaces the material. It returns an error text if the server rejects it. */
-  constructor(private readonly set: (material: SceneMaterial) => Promise<string | undefined>) {
+  constructor(
+    private readonly set: (
+      make: (material: SceneMaterial) => SceneMaterial,
+    ) => Promise<string | undefined>,
+  ) {
     this.fields = [...kAppearanceFields, kAbsorptionField].map((spec) => ({
       ...spec,
       input: new ValueField(spec, (value) => this.change(spec.name, value)),
@@ -71,7 +74,6 @@ export class AppearanceForm {
     initial: SceneMaterial | undefined,
     complete: Appearance | undefined,
   ): void {
-    this.material = material;
     this.initial = initial;
     const { appearance = {}, liquid } = material;
     const before = initial?.appearance ?? {};
@@ -92,8 +94,7 @@ export class AppearanceForm {
     name: N,
     value: Appearance[N] | undefined,
   ): Promise<string | undefined> {
-    if (!this.material) return Promise.resolve(undefined);
-    return this.set(withAppearance(this.material, name, value));
+    return this.set((material) => withAppearance(material, name, value));
   }
 
   private async apply<N extends AppearanceName>(
@@ -104,8 +105,8 @@ export class AppearanceForm {
   }
 
   private async goBack(): Promise<void> {
-    if (!this.material) return;
-    this.say(await this.set(withAppearanceOf(this.material, this.initial)));
+    const { initial } = this;
+    this.say(await this.set((material) => withAppearanceOf(material, initial)));
   }
 
   private say(fault: string | undefined): void {

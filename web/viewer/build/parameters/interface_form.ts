@@ -115,9 +115,9 @@ export class InterfaceForm implements ParameterForm {
     if (first) this.say(await this.set(() => first));
   }
 
-  private async set(make: (now: SceneInterface) => SceneInterface): Promise<string | undefined> {
-    if (!this.scene) return undefined;
-    return this.change({ interface: make(interfaceOf(this.scene, this.pair)) });
+  private set(make: (now: SceneInterface) => SceneInterface): Promise<string | undefined> {
+    const { pair } = this;
+    return this.change(() => this.scene && { interface: make(interfaceOf(this.scene, pair)) });
   }
 
   private say(fault: string | undefined): void {

@@ -10,7 +10,7 @@ export class MaterialForm implements ParameterForm {
   readonly element: HTMLElement;
   private readonly picker = make('select', { id: 'material', ariaLabel: 'Material' });
   private readonly rows = make('div');
-  private readonly appearance = new AppearanceForm((material) => this.change({ material }));
+  private readonly appearance = new AppearanceForm((make) => this.edit(make));
   private fields: ValueField[] = [];
   /** The material and constants of the displayed fields. */
   private shown = '';
@@ -84,8 +84,16 @@ export class MaterialForm implements ParameterForm {
     path: readonly string[],
     value: number | undefined,
   ): Promise<string | undefined> {
-    const { material } = this;
-    if (!material || value === undefined) return undefined;
-    return this.change({ material: withValue(material, path, value) });
+    if (value === undefined) return undefined;
+    return this.edit((material) => withValue(material, path, value));
+  }
+
+  /** Replaces the chosen material, which another choice does not change. */
+  private edit(make: (material: SceneMaterial) => SceneMaterial): Promise<string | undefined> {
+    const { value: chosen } = this.picker;
+    return this.change(() => {
+      const material = this.materials.find(({ name }) => name === chosen);
+      return material && { material: make(material) };
+    });
   }
 }

@@ -70,7 +70,7 @@ export class NumericsForm implements ParameterForm {
     const range = { min: Math.max(Math.ceil(tick / kLongest), 1), max: kMostSteps };
     const label = `Steps in ${Number((1000 * tick).toPrecision(4))} ms`;
     const spec = { id: 'steps', label, unit: '', ...range, isWhole: true };
-    this.steps = new ValueField(spec, (count) => this.change({ step: tick / count! }));
+    this.steps = new ValueField(spec, (count) => this.change(() => ({ step: tick / count! })));
     this.place.replaceChildren(this.steps.element);
   }
 
@@ -79,7 +79,7 @@ export class NumericsForm implements ParameterForm {
   }
 
   private async set(integrator: string): Promise<void> {
-    const fault = await this.change({ integrator });
+    const fault = await this.change(() => ({ integrator }));
     this.fault.textContent = fault ?? '';
     this.fault.hidden = fault === undefined;
     this.integrator.value = this.numerics.integrator;

@@ -8,5 +8,11 @@ export interface ParameterForm {
   show(scene: Scene, initial: Scene): void;
 }
 
-/** Executes a change and displays the result. Returns an error text if it was rejected. */
-export type Change<M extends MethodName> = (params: Params<M>) => Promise<string | undefined>;
+/**
+ * Executes a change after all earlier ones, and displays the result. `make` is called when the form
+ * shows the results of the earlier changes; undefined: there is nothing to change any more. Returns an
+ * error text if the change was rejected.
+ */
+export type Change<M extends MethodName> = (
+  make: () => Params<M> | undefined,
+) => Promise<string | undefined>;

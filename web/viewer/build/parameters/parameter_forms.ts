@@ -1,21 +1,21 @@
-import type { MethodName, Params, SessionDescription } from '../../../client/index';
+import type { MethodName, SessionDescription } from '../../../client/index';
 import { element } from '../../panel/elements';
 import { attempt } from '../../panel/desk';
 import type { Desk } from '../../panel/desk';
 import { InterfaceForm } from './interface_form';
 import { MaterialForm } from './material_form';
 import { NumericsForm } from './numerics_form';
-import type { ParameterForm } from './parameter_form';
+import type { Change, ParameterForm } from './parameter_form';
 import type { SceneDocument } from '../scene_document';
 
 /** The forms for materials, interfaces and steps, with units, ranges and reset. */
 export class ParameterForms {
   private readonly section = element('parameters-details', HTMLDetailsElement);
-  private readonly materials = new MaterialForm((params) =>
-    this.change('world.set_material', params),
-  );
+  private readonly materials = new MaterialForm((make) => this.change('world.set_material', make));
   private readonly forms: readonly ParameterForm[];
   private isEnabled = false;
+  /** Ends with the last change. */
+  private last: Promise<unknown> = Promise.resolve();
 
   constructor(
     private readonly desk: Desk,
@@ -23,8 +23,8 @@ export class ParameterForms {
   ) {
     this.forms = [
       this.materials,
-      new InterfaceForm((params) => this.change('world.set_interface', params)),
-      new NumericsForm((params) => this.change('world.set_numerics', params)),
+      new InterfaceForm((make) => this.change('world.set_interface', make)),
+      new NumericsForm((make) => this.change('world.set_numerics', make)),
     ];
     element('forms-place', HTMLElement).append(...this.forms.map((form) => form.element));
     this.section.addEventListener('toggle', () => void this.look());
@@ -50,13 +50,20 @@ export class ParameterForms {
     for (const form of this.forms) form.show(scene, initial);
   }
 
-  private async change<M extends MethodName>(
+  /** A change of one constant contains the other constants of its material or interface. */
+  private change<M extends MethodName>(
     method: M,
-    params: Params<M>,
-  ): Promise<string | undefined> {
-    const fault = await attempt(this.desk, method, params);
-    this.document.forget();
-    await this.look();
-    return fault;
+    make: Parameters<Change<M>>[0],
+  ): ReturnType<Change<M>> {
+    const done = this.last.then(async () => {
+      const params = make();
+      if (!params) return undefined;
+      const fault = await attempt(this.desk, method, params);
+      this.document.forget();
+      await this.look();
+      return fault;
+    });
+    this.last = done.catch(() => undefined); // the caller gets the error
+    return done;
   }
 }
