@@ -15,6 +15,9 @@ const kPauseMs = 2500;
 /** The assumed period of the display until it is measured, and the least that pictures aim at [ms]. */
 const kPeriodMs = 1000 / 60;
 
+/** The quantile of intervals without pictures that is the period of the display. */
+const kShortIdle = 0.1;
+
 /** The picture is slow if the median interval exceeds the period of the display by this factor. */
 const kSlow = 1.4;
 
@@ -82,12 +85,13 @@ export class Resolution {
   private measurePeriod(interval: number): void {
     this.idle.push(interval);
     if (this.idle.length < kIntervals) return;
-    this.period = Math.max(medianOf(this.idle), kPeriodMs);
+    // A page that loads misses most animation frames, but not all.
+    this.period = Math.max(quantileOf(this.idle, kShortIdle), kPeriodMs);
     this.idle = [];
   }
 
   private decide(): boolean {
-    const median = medianOf(this.drawn);
+    const median = quantileOf(this.drawn, 0.5);
     this.drawn = [];
     if (this.isSettled) return false;
     const { before } = this;
@@ -110,6 +114,6 @@ export class Resolution {
   }
 }
 
-function medianOf(values: readonly number[]): number {
-  return [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)]!;
+function quantileOf(values: readonly number[], share: number): number {
+  return [...values].sort((a, b) => a - b)[Math.floor(share * values.length)]!;
 }
