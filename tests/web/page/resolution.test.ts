@@ -62,15 +62,6 @@ describe('the resolution of moving pictures', () => {
     expect(fast.scale).toBe(full);
   });
 
-  it('does not take the intervals of a busy page for those of the display', () => {
-    const resolution = new Resolution(kSoftwareLevel);
-    const busy = [300, 300, 300, 16.7];
-    let at = 0;
-    for (let i = 0; i < 60; ++i) resolution.add((at += busy[i % busy.length]!), false, true);
-    play(resolution, (scale) => 400 * scale ** 2, { from: at, until: at + 20_000 });
-    expect(resolution.scale).toBe(least);
-  });
-
   it('does not fall by pauses, and is full for another scene', () => {
     const resolution = new Resolution();
     play(resolution, () => 5000, { until: 500_000 });

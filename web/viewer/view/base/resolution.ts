@@ -15,9 +15,6 @@ const kPauseMs = 2500;
 /** The assumed period of the display until it is measured, and the least that pictures aim at [ms]. */
 const kPeriodMs = 1000 / 60;
 
-/** The quantile of intervals without pictures that is the period of the display. */
-const kShortIdle = 0.1;
-
 /** The picture is slow if the median interval exceeds the period of the display by this factor. */
 const kSlow = 1.4;
 
@@ -85,13 +82,12 @@ export class Resolution {
   private measurePeriod(interval: number): void {
     this.idle.push(interval);
     if (this.idle.length < kIntervals) return;
-    // A page that loads misses most animation frames, but not all.
-    this.period = Math.max(quantileOf(this.idle, kShortIdle), kPeriodMs);
+    this.period = Math.max(medianOf(this.idle), kPeriodMs);
     this.idle = [];
   }
 
   private decide(): boolean {
-    const median = quantileOf(this.drawn, 0.5);
+    const median = medianOf(this.drawn);
     this.drawn = [];
     if (this.isSettled) return false;
     const { before } = this;
@@ -114,6 +110,6 @@ export class Resolution {
   }
 }
 
-function quantileOf(values: readonly number[], share: number): number {
-  return [...values].sort((a, b) => a - b)[Math.floor(share * values.length)]!;
+function medianOf(values: readonly number[]): number {
+  return [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)]!;
 }
