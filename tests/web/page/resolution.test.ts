@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { kScales, kSoftwareLevel, Resolution } from '../../../web/viewer/view/base/resolution';
+import { kScales, Resolution } from '../../../web/viewer/view/base/resolution';
 
 /** Draws pictures until `until` [ms]. `interval` returns the time of a picture at a scale [ms]. */
 function play(
@@ -29,26 +29,6 @@ describe('the resolution of moving pictures', () => {
     play(resolution, interval);
     expect(resolution.scale).toBe(scale);
     expect(resolution.isFinal).toBe(isFinal);
-  });
-
-  it.each([
-    ['fast', () => 16.7, full],
-    ['slightly slow', (scale: number) => 30 * scale ** 2, second],
-    ['slow', (scale: number) => 50 * scale ** 2, third],
-    ['very slow', (scale: number) => 800 * scale ** 2, least],
-  ])('starts lower with software graphics, and adapts if they are %s', (_, interval, scale) => {
-    const resolution = new Resolution(kSoftwareLevel);
-    expect(resolution.scale).toBe(third);
-    play(resolution, interval);
-    expect(resolution.scale).toBe(scale);
-    resolution.restart();
-    expect(resolution.scale).toBe(third);
-  });
-
-  it('adapts to pictures of more than one second', () => {
-    const resolution = new Resolution();
-    play(resolution, (scale) => 2000 * scale ** 2, { until: 60_000 });
-    expect(resolution.scale).toBe(least);
   });
 
   it('keeps up with a display of 30 Hz, but not with more than 60 Hz', () => {

@@ -1,16 +1,13 @@
 /** Shares of the rows and columns of the display, the best first. */
 export const kScales = [1, 0.8, 0.64, 0.5] as const;
 
-/** The first index of kScales with software graphics, which are too slow for the full resolution. */
-export const kSoftwareLevel = 2;
-
 /** The number of intervals for a decision, or the least number after a time [ms]. */
 const kIntervals = 30;
 const kLeastIntervals = 8;
 const kDecisionMs = 1500;
 
 /** A longer interval is a pause in drawing [ms]. */
-const kPauseMs = 2500;
+const kPauseMs = 1000;
 
 /** The assumed period of the display until it is measured, and the least that pictures aim at [ms]. */
 const kPeriodMs = 1000 / 60;
@@ -24,11 +21,9 @@ const kGain = 0.92;
 /**
  * Selects the resolution of moving pictures: lower if they are slower than the display, and the
  * previous one again if the lower one is not faster, because then the graphics are not the reason.
- * Rises from a first level below the full resolution until the picture is slower than the display.
  */
 export class Resolution {
-  private level: number;
-  private mayRise = true;
+  private level = 0;
   private drawn: number[] = [];
   private idle: number[] = [];
   private period = kPeriodMs;
@@ -37,11 +32,6 @@ export class Resolution {
   private before: number | undefined;
   /** Whether another level would not help. */
   private isSettled = false;
-
-  /** `first`: the index of kScales at the start of a scene. */
-  constructor(private readonly first = 0) {
-    this.level = first;
-  }
 
   /** The share of the display's rows and columns. */
   get scale(): number {
@@ -70,10 +60,9 @@ export class Resolution {
     return isEnough && this.decide();
   }
 
-  /** Returns to the first resolution, for another scene. */
+  /** Returns to the full resolution, for another scene. */
   restart(): void {
-    this.level = this.first;
-    this.mayRise = true;
+    this.level = 0;
     this.drawn = [];
     this.before = this.lastAt = undefined;
     this.isSettled = false;
@@ -97,13 +86,7 @@ export class Resolution {
       --this.level;
       return true;
     }
-    if (median <= kSlow * this.period) {
-      if (!this.mayRise || this.level === 0) return false;
-      --this.level;
-      return true;
-    }
-    this.mayRise = false;
-    if (this.isFinal) return false;
+    if (median <= kSlow * this.period || this.isFinal) return false;
     this.before = median;
     ++this.level;
     return true;
