@@ -23,8 +23,9 @@ struct CohesionParameters {
   std::int32_t dimensions;
 };
 
-/// Cohesion of one liquid, and its adhesion to walls and solids, on a device. The forces are those
-/// of core/liquid/surface/cohesion.h. The functions throw opencl::DeviceFailure.
+/// Cohesion of one liquid, and its adhesion to walls and solids, on a device. The forces have the
+/// formulas of core/liquid/surface/cohesion.h. If the device fails, each function throws
+/// opencl::DeviceFailure.
 class DeviceCohesion {
  public:
   DeviceCohesion(opencl::Program& program, const Model& model);
