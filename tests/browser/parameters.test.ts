@@ -46,6 +46,16 @@ it('changes the constants of a material, within their range, and restores them',
   await expect.poll(() => page.inputValue(field), kInTime).toBe(String(before));
 });
 
+it('takes no change before it shows the constants of the present scene', async () => {
+  await visit('dam-break');
+  await visits.visit('dam-break'); // closes the section
+  const { page } = visits.viewer;
+  for (const field of ['#material-density', '#integrator', '#steps'])
+    expect(await page.isDisabled(field), field).toBe(true);
+  await unfold(visits.viewer, 'parameters-details');
+  await page.waitForSelector('#material-density:enabled');
+});
+
 it('keeps a change whose result follows the next change', async () => {
   await visit('dam-break');
   await visits.viewer.page.evaluate(

@@ -14,6 +14,10 @@ export class ParameterForms {
   private readonly materials = new MaterialForm((make) => this.change('world.set_material', make));
   private readonly forms: readonly ParameterForm[];
   private isEnabled = false;
+  /** The forms show the present scene. */
+  private isShown = false;
+  /** Counts the scenes, and the returns to earlier times. */
+  private age = 0;
   /** Ends with the last change. */
   private last: Promise<unknown> = Promise.resolve();
 
@@ -32,12 +36,17 @@ export class ParameterForms {
 
   enable(enabled: boolean): void {
     this.isEnabled = enabled;
-    for (const form of this.forms) form.enable(enabled);
+    this.enableForms();
   }
 
   /** `isNew`: another scene or session, or an earlier time of the same. */
   describe(description: SessionDescription, isNew: boolean): void {
-    if (isNew) this.document.restart();
+    if (isNew) {
+      this.document.restart();
+      ++this.age;
+      this.isShown = false;
+      this.enableForms();
+    }
     this.materials.describe(description.materials);
     void this.look();
   }
@@ -45,9 +54,17 @@ export class ParameterForms {
   /** Requests the scene if the section is open. */
   private async look(): Promise<void> {
     if (!this.section.open || !this.isEnabled) return;
+    const { age } = this;
     const [scene, initial] = await Promise.all([this.document.get(), this.document.asLoaded()]);
-    if (!scene || !initial) return;
+    if (!scene || !initial || age !== this.age) return;
     for (const form of this.forms) form.show(scene, initial);
+    this.isShown = true;
+    this.enableForms();
+  }
+
+  /** The constants of another scene cannot be changed. */
+  private enableForms(): void {
+    for (const form of this.forms) form.enable(this.isEnabled && this.isShown);
   }
 
   /** A change of one constant contains the other constants of its material or interface. */
@@ -55,8 +72,9 @@ export class ParameterForms {
     method: M,
     make: Parameters<Change<M>>[0],
   ): ReturnType<Change<M>> {
+    const { age } = this;
     const done = this.last.then(async () => {
-      const params = make();
+      const params = age === this.age ? make() : undefined;
       if (!params) return undefined;
       const fault = await attempt(this.desk, method, params);
       this.document.forget();
