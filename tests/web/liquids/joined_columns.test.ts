@@ -126,10 +126,10 @@ describe('LiquidDrawing', () => {
     const time = { ...kGrid, seconds: 0.02, height: 1 };
     const liquids = [1, 2, 3].map((body) => ({ ...bodyOf(body, [10 * body]), radius: 1 }));
     drawing.style = style;
-    drawing.update(liquids, time);
+    drawing.update(liquids, () => [], time);
     const { visible, children } = drawing.group;
     expect(visible ? children.filter((mesh) => mesh.visible).length : 0).toBe(count);
-    drawing.update([], time);
+    drawing.update([], () => [], time);
     expect(drawing.group.visible).toBe(false);
   });
 
@@ -139,7 +139,7 @@ describe('LiquidDrawing', () => {
     const update = (): void => {
       const { row, columns } = body;
       const liquid = { body: 1, row, columns, valueQuantum: 1, radius: 1 };
-      drawing.update([liquid], { ...kGrid, seconds: 0.02, height: 1 });
+      drawing.update([liquid], () => [], { ...kGrid, seconds: 0.02, height: 1 });
     };
     const { uniforms } = (drawing.group.children[0] as Mesh).material as ShaderMaterial;
     const texels = (): DataTexture => uniforms.froth_texels!.value as DataTexture;

@@ -51,10 +51,16 @@ function unpack(values: Uint32Array): Shape {
   };
 }
 
-/** Returns the shape of each particle. */
-function shapesOf(places: readonly Place[], walls = kNoWalls): Shape[] {
+/** Returns the shape of each particle of a liquid. Particles of solids have the weight 1. */
+function shapesOf(
+  places: readonly Place[],
+  walls = kNoWalls,
+  solids: readonly Place[] = [],
+): Shape[] {
   const values = new Uint32Array(kShapeNumbers * places.length);
-  new SurfaceShapes().write(places.flat(), places.length, kRadius, walls, values);
+  const all = [...places, ...solids].flat();
+  const weights = solids.map(() => 1);
+  new SurfaceShapes().write(all, places.length, weights, kRadius, walls, values);
   return places.map((_, i) => unpack(values.subarray(kShapeNumbers * i, kShapeNumbers * (i + 1))));
 }
 
@@ -118,6 +124,37 @@ it('has the same shapes at a wall as away from it', () => {
   beside.axes.forEach((axis, q) => expect(axis).toBeCloseTo(away.axes[q]!, kDigits));
   const below = shapes[indexOf(places, [0, 6 * kSpacing, 0])]!;
   for (const axis of below.axes) expect(axis).toBeCloseTo(kSphere, 1);
+});
+
+describe('a liquid beside a solid', () => {
+  const kUnseen = 0.02; // one hundredth of a spacing
+  const kSide = 13;
+  const kMiddle = kSpacing * 6;
+  const liquid = lattice([kSide, kSide, 6]);
+  const [, , kTop] = liquid.at(-1)!;
+  /** Returns a solid whose surface is at this distance above the particles at the top [radii]. */
+  const solidAt = (distance: number): Place[] =>
+    lattice([kSide, kSide, 5]).map(([x, y, z]) => [x, y, z + kTop + (distance + 1) * kRadius]);
+  const shapeAt = (z: number, solids: readonly Place[]): Shape =>
+    shapesOf(liquid, kNoWalls, solids)[indexOf(liquid, [kMiddle, kMiddle, z])]!;
+
+  it.each([1, 1.25, 1.5])('extends to its surface at a distance of %f radii', (distance) => {
+    const { axes, shift } = shapeAt(kTop, solidAt(distance));
+    expect(shift[2]! + axes[2]!).toBeGreaterThan(distance);
+    for (const way of shift.slice(0, 2)) expect(Math.abs(way)).toBeLessThan(kUnseen);
+  });
+
+  it('does not extend from its other side, nor to a distant solid', () => {
+    const alone = shapeAt(0, []);
+    for (const [z, distance] of [
+      [0, 1],
+      [kTop, 5],
+    ] as const) {
+      const { axes, shift } = shapeAt(z, solidAt(distance));
+      axes.forEach((axis, q) => expect(axis).toBeCloseTo(alone.axes[q]!, kDigits));
+      shift.forEach((way, q) => expect(way).toBeCloseTo(alone.shift[q]!, kDigits));
+    }
+  });
 });
 
 it('does not move a single particle towards a wall', () => {

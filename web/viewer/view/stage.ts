@@ -10,7 +10,7 @@ import type { Pose } from './base/pose';
 import { FluidPass, kMostRows } from './fluid/fluid_pass';
 import type { FluidLook } from './fluid/fluid_pass';
 import { kLayers } from './base/layers';
-import { Resolution } from './base/resolution';
+import { kSoftwareLevel, Resolution } from './base/resolution';
 import { LiquidPass } from './liquid_pass';
 import type { LiquidStyle } from './base/liquid_style';
 import type { SharedUniforms } from './bodies/shared_uniforms';
@@ -41,7 +41,7 @@ export class Stage {
   private stale = true;
   private drewLast = false;
   private drawnAt = 0;
-  private readonly resolution = new Resolution();
+  private readonly resolution: Resolution;
   /** The share of the display's rows and columns in the present picture. */
   private scale = 1;
   private counted = { passes: 0, calls: 0 };
@@ -74,6 +74,7 @@ export class Stage {
     this.renderer = new WebGLRenderer({ canvas, antialias: true });
     this.renderer.extensions.has('EXT_texture_filter_anisotropic'); // early, as `graphics`
     this.graphics = graphicsOf(this.renderer); // early, because the browser answers in order
+    this.resolution = new Resolution(this.graphics.isSoftware ? kSoftwareLevel : 0);
     this.warmUp = new WarmUp(this.renderer, this.scene);
     this.renderer.info.autoReset = false; // a picture has several passes
     this.renderer.setPixelRatio(fullRatio());
@@ -142,7 +143,7 @@ export class Stage {
     return this.resolution.isFinal;
   }
 
-  /** Returns to the full resolution, for another scene. */
+  /** Returns to the first resolution of moving pictures, for another scene. */
   restoreResolution(): void {
     this.resolution.restart();
     this.invalidate();

@@ -125,9 +125,10 @@ export class World {
     );
     const grids = rows.filter(({ view }) => !view.isRigid);
     this.grids.update(grids.map(({ view, row }) => ({ row, ...view.gridParticles })));
-    const liquids = grids.filter(({ view }) => view.description.kind === 'liquid');
+    const liquids = grids.filter(({ view }) => view.isLiquid);
     this.drawing.update(
       liquids.map(({ view, row }) => ({ row, ...view.gridParticles })),
+      () => shown.filter((view) => !view.isLiquid).map((view) => view.solidParticles),
       { ...this.grid, seconds: this.shared.look.interval.value, height: this.height },
     );
   }
@@ -167,16 +168,15 @@ export class World {
   /** Returns the existing view if it can show the body. */
   private viewOf(body: BodyDescription, nth: number, old: BodyView | undefined): BodyView {
     const look = this.lookOf(body);
-    const { tearing_strain: tearingStrain } =
-      this.description!.materials.find(({ name }) => name === body.material) ?? {};
+    const material = this.description!.materials.find(({ name }) => name === body.material);
     if (old?.isOf(body, nth)) {
       old.rest();
       old.look = look;
-      old.tearingStrain = tearingStrain;
+      old.tearingStrain = material?.tearing_strain;
       return old;
     }
     const view = new BodyView(body, nth, look, this.shared, this.workshop, () => this.onChange());
-    view.tearingStrain = tearingStrain;
+    view.tearingStrain = material?.tearing_strain;
     view.liquidStyle = this.style;
     view.colour = this.colouring;
     view.solidStyle = this.solids;
@@ -343,7 +343,7 @@ export class World {
   }
 
   private get liquids(): BodyView[] {
-    return [...this.bodies.values()].filter(({ description }) => description.kind === 'liquid');
+    return [...this.bodies.values()].filter(({ isLiquid }) => isLiquid);
   }
 
   /** Sets the reference of absorption, the length of the darkest liquid, and relative values. */

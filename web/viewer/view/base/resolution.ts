@@ -1,16 +1,22 @@
 /** Shares of the rows and columns of the display, the best first. */
 export const kScales = [1, 0.8, 0.64, 0.5] as const;
 
+/** The first index of kScales with software graphics, which are too slow for the full resolution. */
+export const kSoftwareLevel = 2;
+
 /** The number of intervals for a decision, or the least number after a time [ms]. */
 const kIntervals = 30;
 const kLeastIntervals = 8;
 const kDecisionMs = 1500;
 
 /** A longer interval is a pause in drawing [ms]. */
-const kPauseMs = 1000;
+const kPauseMs = 2500;
 
 /** The assumed period of the display until it is measured, and the least that pictures aim at [ms]. */
 const kPeriodMs = 1000 / 60;
+
+/** The quantile of intervals without pictures that is the period of the display. */
+const kShortIdle = 0.1;
 
 /** The picture is slow if the median interval exceeds the period of the display by this factor. */
 const kSlow = 1.4;
@@ -21,9 +27,11 @@ const kGain = 0.92;
 /**
  * Selects the resolution of moving pictures: lower if they are slower than the display, and the
  * previous one again if the lower one is not faster, because then the graphics are not the reason.
+ * Rises from a first level below the full resolution until the picture is slower than the display.
  */
 export class Resolution {
-  private level = 0;
+  private level: number;
+  private mayRise = true;
   private drawn: number[] = [];
   private idle: number[] = [];
   private period = kPeriodMs;
@@ -32,6 +40,11 @@ export class Resolution {
   private before: number | undefined;
   /** Whether another level would not help. */
   private isSettled = false;
+
+  /** `first`: the index of kScales at the start of a scene. */
+  constructor(private readonly first = 0) {
+    this.level = first;
+  }
 
   /** The share of the display's rows and columns. */
   get scale(): number {
@@ -60,9 +73,10 @@ export class Resolution {
     return isEnough && this.decide();
   }
 
-  /** Returns to the full resolution, for another scene. */
+  /** Returns to the first resolution, for another scene. */
   restart(): void {
-    this.level = 0;
+    this.level = this.first;
+    this.mayRise = true;
     this.drawn = [];
     this.before = this.lastAt = undefined;
     this.isSettled = false;
@@ -71,12 +85,13 @@ export class Resolution {
   private measurePeriod(interval: number): void {
     this.idle.push(interval);
     if (this.idle.length < kIntervals) return;
-    this.period = Math.max(medianOf(this.idle), kPeriodMs);
+    // A page that loads misses most animation frames, but not all.
+    this.period = Math.max(quantileOf(this.idle, kShortIdle), kPeriodMs);
     this.idle = [];
   }
 
   private decide(): boolean {
-    const median = medianOf(this.drawn);
+    const median = quantileOf(this.drawn, 0.5);
     this.drawn = [];
     if (this.isSettled) return false;
     const { before } = this;
@@ -86,13 +101,19 @@ export class Resolution {
       --this.level;
       return true;
     }
-    if (median <= kSlow * this.period || this.isFinal) return false;
+    if (median <= kSlow * this.period) {
+      if (!this.mayRise || this.level === 0) return false;
+      --this.level;
+      return true;
+    }
+    this.mayRise = false;
+    if (this.isFinal) return false;
     this.before = median;
     ++this.level;
     return true;
   }
 }
 
-function medianOf(values: readonly number[]): number {
-  return [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)]!;
+function quantileOf(values: readonly number[], share: number): number {
+  return [...values].sort((a, b) => a - b)[Math.floor(share * values.length)]!;
 }

@@ -20,6 +20,7 @@ import type { SolidSurface } from '../solids/solid';
 import type { SolidMaker } from '../solids/solid_of';
 import { BodyPlaces } from './body_places';
 import type { LiquidBody } from '../fluid/liquid_body';
+import type { SolidParticles } from '../fluid/solid_neighbours';
 import type { GridParticles } from '../particles/joined_grids';
 import type { RigidParticles } from '../particles/joined_particles';
 import type { SharedUniforms } from './shared_uniforms';
@@ -226,6 +227,10 @@ export class BodyView {
     return place === undefined ? undefined : this.places.at(place);
   }
 
+  get isLiquid(): boolean {
+    return this.description.kind === 'liquid';
+  }
+
   /** Whether it is a rigid body. */
   get isRigid(): boolean {
     return this.motion !== undefined;
@@ -250,6 +255,14 @@ export class BodyView {
     return { spheres, spots, places: description.local_positions ?? [] };
   }
 
+  /** The particles of a deformable or rigid body in the newest frame. */
+  get solidParticles(): SolidParticles {
+    const { columns, description, motion, group } = this;
+    const toWorld = motion ? motion.matrixAt(1, new Matrix4()) : group.matrix;
+    const places = description.local_positions ?? columns.newestPlaces();
+    return { places, count: this.count, toWorld, radius: description.radius };
+  }
+
   /** The longest side of the surface, 1 without a surface [m]. */
   get bodyLength(): number {
     return this.solid?.bodyLength ?? 1;
@@ -265,7 +278,7 @@ export class BodyView {
 
   /** Sets the style of a liquid. Does not affect other bodies. */
   set liquidStyle(chosen: LiquidStyle) {
-    if (this.description.kind !== 'liquid') return;
+    if (!this.isLiquid) return;
     this.spheres.visible = chosen === 'particles';
     this.spots.visible = chosen !== 'fluid'; // it is in the shadow map
     this.skin.mesh.visible = chosen === 'surface';
@@ -293,8 +306,7 @@ export class BodyView {
 
   private showOpacity(): void {
     const { opacity } = this.appearance;
-    const isLiquid = this.description.kind === 'liquid';
-    const shown = isLiquid ? kLeastOpacity + (1 - kLeastOpacity) * opacity : opacity;
+    const shown = this.isLiquid ? kLeastOpacity + (1 - kLeastOpacity) * opacity : opacity;
     if (this.solid) this.solid.opacity = opacity;
     this.skin.opacity = this.isVeiled ? kVeil.opacity : shown;
   }

@@ -1,5 +1,5 @@
-import { Color, Group, Mesh } from 'three';
-import type { ShaderMaterial, Vector3 } from 'three';
+import { Box3, Color, Group, Matrix4, Mesh, Vector3 } from 'three';
+import type { ShaderMaterial } from 'three';
 import { kLayers } from '../base/layers';
 import type { LiquidStyle } from '../base/liquid_style';
 import type { WallUniforms } from './wall_uniforms';
@@ -10,7 +10,9 @@ import { splatDepthMaterial, splatMaterial } from '../particles/splat_material';
 import { fluidDepthMaterial, fluidShadowMaterial, fluidThicknessMaterial } from './fluid_particles';
 import type { BehindUniforms } from './fluid_pass';
 import { Froth } from './froth';
-import { SurfaceShapes } from './surface_shapes';
+import { kReach, SurfaceShapes } from './surface_shapes';
+import { solidsNear } from './solid_neighbours';
+import type { SolidParticles } from './solid_neighbours';
 import type { LiquidBody, LiquidTime } from './liquid_body';
 
 /** The shared uniforms of liquids. */
@@ -50,8 +52,12 @@ export class LiquidDrawing {
     for (const { mesh, style: own } of this.meshes) mesh.visible = style === own;
   }
 
-  /** Draws these liquids. Called before each picture. */
-  update(liquids: readonly LiquidBody[], time: LiquidTime): void {
+  /** Draws these liquids, which touch these solids. Called before each picture. */
+  update(
+    liquids: readonly LiquidBody[],
+    solids: () => readonly SolidParticles[],
+    time: LiquidTime,
+  ): void {
     const { drawn, joined } = this;
     this.group.visible = liquids.length > 0 && (drawn === 'fluid' || drawn === 'splats');
     if (!this.group.visible) return;
@@ -61,7 +67,7 @@ export class LiquidDrawing {
     }
     if (drawn !== 'fluid' || this.hasFroth) return;
     this.froth.follow(liquids, joined, time);
-    this.shapeSurface(liquids, time);
+    this.shapeSurface(liquids, solids(), time);
     this.hasFroth = true;
   }
 
@@ -70,14 +76,26 @@ export class LiquidDrawing {
     this.froth.clear();
   }
 
-  private shapeSurface(liquids: readonly LiquidBody[], { origin, quantum }: LiquidTime): void {
+  private shapeSurface(
+    liquids: readonly LiquidBody[],
+    solids: readonly SolidParticles[],
+    { origin, quantum }: LiquidTime,
+  ): void {
     const { center, shapes } = this.joined.columns;
     const count = liquids.reduce((sum, { columns }) => sum + columns.count, 0);
     const radius = Math.max(...liquids.map((liquid) => liquid.radius)) / quantum;
+    const fromWorld = new Matrix4().makeScale(quantum, quantum, quantum);
+    fromWorld.setPosition(...origin).invert();
     const onGrid = ({ value }: { value: Vector3 }): number[] =>
-      value.toArray().map((x, q) => (x - origin[q]!) / quantum);
+      value.clone().applyMatrix4(fromWorld).toArray();
     const walls = { low: onGrid(this.walls.wall_low), high: onGrid(this.walls.wall_high) };
-    this.shapes.write(center.values, count, radius, walls, shapes.values);
+    const liquid = center.values.subarray(0, 3 * count);
+    const reach = kReach * radius;
+    const touched = solidsNear(solids, fromWorld, boxOf(liquid), reach, radius);
+    const places = new Float32Array(liquid.length + touched.places.length);
+    places.set(liquid);
+    places.set(touched.places, liquid.length);
+    this.shapes.write(places, count, touched.weights, radius, walls, shapes.values);
     shapes.changed();
   }
 
@@ -94,4 +112,11 @@ export class LiquidDrawing {
     this.group.add(mesh);
     this.meshes.push({ mesh, style });
   }
+}
+
+function boxOf(places: ArrayLike<number>): Box3 {
+  const box = new Box3();
+  const place = new Vector3();
+  for (let i = 0; i < places.length; i += 3) box.expandByPoint(place.fromArray(places, i));
+  return box;
 }

@@ -1,8 +1,9 @@
 import { NeighbourGrid } from './neighbour_grid';
 import type { WallBox } from './neighbour_grid';
+import type { NeighbourPlaces } from './solid_neighbours';
 
 /** Radius of the neighbourhood [particle radii]. */
-const kReach = 4.5;
+export const kReach = 4.5;
 /** The sum of the weights within a liquid, and the variance along an axis [squared reaches]. */
 const kWithin = (0.07619 * 4 * Math.PI * kReach ** 3) / 8;
 const kVariance = 1 / 9;
@@ -21,6 +22,13 @@ const kFlat = 0.75;
 /** 1 / (1 - the variance along the normal of a flat surface): full displacement along the normal. */
 const kFollow = 1.5;
 
+/**
+ * The share of solids in the neighbourhood from which on a particle begins to extend to the solid,
+ * and that with the full extension; the extension [particle radii].
+ */
+const kTouch = [0.03, 0.15] as const;
+const kExtension = 0.6;
+
 /** Greatest displacement along an axis [particle radii]. */
 export const kMostShift = 2;
 /** Greatest entry of a shape [particle radii]. */
@@ -35,40 +43,54 @@ export const kShapeNumbers = 4;
  * particles around them. A simple form of the method of J. Yu and G. Turk, "Reconstructing surfaces of
  * particle-based fluids using anisotropic kernels" (2013): shapes are linear in the variances of the
  * neighbours, which needs no eigenvectors, and only the surface's particles are averaged, so that the
- * liquid does not shrink. Walls mirror the particles beside them.
+ * liquid does not shrink. Walls mirror the particles beside them. Solids continue the liquid, and the
+ * particles beside them extend to their surfaces.
  */
 export class SurfaceShapes {
   private readonly ranges = new Uint32Array(18);
-  /** Sums of the weights, of the weighted distances, and of their products: xx, yy, zz, xy, xz, yz. */
-  private readonly moments = new Float64Array(10);
+  /**
+   * Sums of the weights, of the weighted distances, and of their products: xx, yy, zz, xy, xz, yz;
+   * then sums of the weights and weighted distances of solids.
+   */
+  private readonly moments = new Float64Array(14);
   /** The neighbours of the candidates: three distances, and the weight. */
   private near = new Float32Array(4096);
   private nearIndex = new Uint32Array(1024);
   private nears = 0;
 
-  /** Writes the shapes of particles of this radius [quanta]; see pack(). */
+  /**
+   * Writes the shapes of `count` particles of this radius [quanta]; see pack(). The coordinates of
+   * solids follow theirs in `places`.
+   */
   write(
     places: ArrayLike<number>,
     count: number,
+    solids: NeighbourPlaces['weights'],
     radius: number,
     walls: WallBox,
     to: Uint32Array,
   ): void {
-    const grid = new NeighbourGrid(places, count, kReach * radius);
+    const all = count + solids.length;
+    const grid = new NeighbourGrid(places, all, kReach * radius);
     const candidates = this.candidatesOf(grid, count, radius, walls, to);
-    const at = new Float32Array(count); // how much a particle belongs to the surface
+    const at = new Float32Array(all); // how much a particle belongs to the surface
     const starts = new Uint32Array(candidates.length + 1);
     const variances = new Float32Array(6 * candidates.length);
-    const isCandidate = new Uint8Array(count);
+    const touches = new Float32Array(3 * candidates.length);
+    const isCandidate = new Uint8Array(all);
     for (const i of candidates) isCandidate[i] = 1;
     this.nears = 0;
+    const near = { places, count, solids, radius, walls, isCandidate };
     candidates.forEach((i, n) => {
-      const weight = this.measure(grid, places, i, radius, walls, isCandidate, variances, 6 * n);
+      const weight = this.measure(grid, near, i, variances.subarray(6 * n, 6 * n + 6));
+      touches.set(this.touch(), 3 * n);
       at[i] = 1 - smoothStep(kSurface, weight / kWithin);
       starts[n + 1] = this.nears;
     });
     candidates.forEach((i, n) => {
-      this.shape(i, starts[n]!, starts[n + 1]!, at, variances.subarray(6 * n, 6 * n + 6), to);
+      const { shape, shift } = this.shape(at, starts, n, i, variances.subarray(6 * n, 6 * n + 6));
+      extend(shape, shift, touches.subarray(3 * n, 3 * n + 3));
+      to.set(pack(shape, shift), kShapeNumbers * i);
     });
   }
 
@@ -108,13 +130,9 @@ export class SurfaceShapes {
    */
   private measure(
     grid: NeighbourGrid,
-    places: ArrayLike<number>,
+    { places, count, solids, radius, walls, isCandidate }: Neighbourhood,
     i: number,
-    radius: number,
-    walls: WallBox,
-    isCandidate: Uint8Array,
     to: Float32Array,
-    first: number,
   ): number {
     const { ranges, moments } = this;
     const { sorted, index } = grid;
@@ -134,25 +152,37 @@ export class SurfaceShapes {
         const dy = scale * (sorted[3 * p + 1]! - oy);
         const dz = scale * (sorted[3 * p + 2]! - oz);
         const remembered = isCandidate[index[p]!] ? index[p]! : -1;
-        const weight = this.add(dx, dy, dz);
+        const isSolid = index[p]! >= count;
+        const share = isSolid ? solids[index[p]! - count]! : 1;
+        const weight = this.add(dx, dy, dz, share);
+        if (weight > 0 && isSolid) this.addSolid(dx, dy, dz, weight);
         if (weight > 0 && remembered >= 0) this.remember(remembered, dx, dy, dz, weight);
-        if (hasMirrors) this.addImages(remembered, [dx, dy, dz], mirrors);
+        if (hasMirrors) this.addImages(remembered, [dx, dy, dz], share, mirrors);
       }
     }
     const sum = moments[0]!;
     const mean = (n: number): number => moments[n]! / sum;
     const [x, y, z] = [mean(1), mean(2), mean(3)];
     const products = [x * x, y * y, z * z, x * y, x * z, y * z];
-    for (let n = 0; n < 6; ++n) to[first + n] = (mean(4 + n) - products[n]!) / kVariance;
+    for (let n = 0; n < 6; ++n) to[n] = (mean(4 + n) - products[n]!) / kVariance;
     return sum;
   }
 
+  /** Returns the extension of the particle towards the solids around it [particle radii]. */
+  private touch(): [number, number, number] {
+    const [sum, x, y, z] = this.moments.subarray(10) as unknown as [number, number, number, number];
+    const length = Math.hypot(x, y, z);
+    if (length === 0) return [0, 0, 0];
+    const scale = (kExtension * smoothStep(kTouch, sum / kWithin)) / length;
+    return [scale * x, scale * y, scale * z];
+  }
+
   /** Adds a neighbour at a distance that is relative to the reach. Returns its weight. */
-  private add(dx: number, dy: number, dz: number): number {
+  private add(dx: number, dy: number, dz: number, share: number): number {
     const rest = 1 - dx * dx - dy * dy - dz * dz;
     if (rest <= 0) return 0;
     const { moments } = this;
-    const w = rest * rest;
+    const w = share * rest * rest;
     moments[0]! += w;
     moments[1]! += w * dx;
     moments[2]! += w * dy;
@@ -166,6 +196,14 @@ export class SurfaceShapes {
     return w;
   }
 
+  private addSolid(dx: number, dy: number, dz: number, weight: number): void {
+    const { moments } = this;
+    moments[10]! += weight;
+    moments[11]! += weight * dx;
+    moments[12]! += weight * dy;
+    moments[13]! += weight * dz;
+  }
+
   /**
    * Adds the mirror images of a neighbour. They have its distances in `near`, so that they do not
    * displace single particles towards a wall.
@@ -173,6 +211,7 @@ export class SurfaceShapes {
   private addImages(
     j: number,
     [dx, dy, dz]: readonly [number, number, number],
+    share: number,
     [across, along, up]: readonly [readonly number[], readonly number[], readonly number[]],
   ): void {
     for (let c = -1; c < up.length; ++c) {
@@ -182,7 +221,7 @@ export class SurfaceShapes {
         const y = b < 0 ? dy : along[b]! - dy;
         if (Math.abs(y) >= 1) continue;
         for (let a = c < 0 && b < 0 ? 0 : -1; a < across.length; ++a) {
-          const weight = this.add(a < 0 ? dx : across[a]! - dx, y, z);
+          const weight = this.add(a < 0 ? dx : across[a]! - dx, y, z, share);
           if (weight > 0 && j >= 0) this.remember(j, dx, dy, dz, weight);
         }
       }
@@ -204,22 +243,21 @@ export class SurfaceShapes {
     this.nearIndex[this.nears++] = j;
   }
 
-  /** Writes the shape of a particle with these neighbours. */
+  /** Returns shape and displacement of the n-th candidate, particle i, with its neighbours. */
   private shape(
-    i: number,
-    first: number,
-    last: number,
     at: Float32Array,
+    starts: Uint32Array,
+    n: number,
+    i: number,
     variances: Float32Array,
-    to: Uint32Array,
-  ): void {
+  ): { shape: number[]; shift: number[] } {
     let [sum, x, y, z] = [0, 0, 0, 0];
-    for (let n = first; n < last; ++n) {
-      const w = this.near[4 * n + 3]! * at[this.nearIndex[n]!]!;
+    for (let k = starts[n]!, last = starts[n + 1]!; k < last; ++k) {
+      const w = this.near[4 * k + 3]! * at[this.nearIndex[k]!]!;
       sum += w;
-      x += w * this.near[4 * n]!;
-      y += w * this.near[4 * n + 1]!;
-      z += w * this.near[4 * n + 2]!;
+      x += w * this.near[4 * k]!;
+      y += w * this.near[4 * k + 1]!;
+      z += w * this.near[4 * k + 2]!;
     }
     const own = at[i]!;
     const [vx, vy, vz, xy, xz, yz] = variances as unknown as number[];
@@ -239,8 +277,28 @@ export class SurfaceShapes {
       flat * xz!,
       flat * yz!,
     ];
-    to.set(pack(shape, shift), kShapeNumbers * i);
+    return { shape, shift };
   }
+}
+
+/** The arguments of SurfaceShapes.write(), and which particles can be at the surface. */
+interface Neighbourhood {
+  places: ArrayLike<number>;
+  count: number;
+  solids: readonly number[];
+  radius: number;
+  walls: WallBox;
+  isCandidate: Uint8Array;
+}
+
+/** Extends an ellipsoid by a vector, at one side only. */
+function extend(shape: number[], shift: number[], by: Float32Array): void {
+  const [x, y, z] = by as unknown as [number, number, number];
+  const length = Math.hypot(x, y, z);
+  if (length === 0) return;
+  const half = 1 / (2 * length);
+  [x * x, y * y, z * z, x * y, x * z, y * z].forEach((xx, n) => (shape[n]! += half * xx));
+  [x, y, z].forEach((way, q) => (shift[q]! += 0.5 * way));
 }
 
 const kNone: readonly number[] = [];

@@ -30,10 +30,10 @@ export class RigidMotion {
     this.isKnown = false;
   }
 
-  /** Writes the transformation from body to world axes, at a phase from 0 (previous pose) to 1. */
-  matrixAt(phase: number, to: Matrix4): void {
+  /** Sets `to` to the transformation from body to world axes, at a phase from 0 (previous pose) to 1. */
+  matrixAt(phase: number, to: Matrix4): Matrix4 {
     kPlace.lerpVectors(this.place[0], this.place[1], phase);
-    to.compose(kPlace, kTurn.slerpQuaternions(this.turn[0], this.turn[1], phase), kOne);
+    return to.compose(kPlace, kTurn.slerpQuaternions(this.turn[0], this.turn[1], phase), kOne);
   }
 
   /** Mean velocity [m/s] and angular velocity [1/s] between the poses, `seconds` apart. */
