@@ -135,11 +135,11 @@ export class Viewer {
 
   /** Returns a picture of the canvas after two successive pictures are equal. */
   async stillPicture(): Promise<string> {
-    // A moving picture can have a lower resolution.
-    await this.page.waitForFunction(
-      () => !(Number(document.querySelector('canvas')?.dataset.scale) < 1),
-    );
     for (let last = ''; ;) {
+      // A moving picture can have a lower resolution.
+      await this.page.waitForFunction(
+        () => !(Number(document.querySelector('canvas')?.dataset.scale) < 1),
+      );
       const picture = await this.picture();
       // A picture that waits for shaders is not drawn, and the previous one remains.
       await this.until('#view[data-warm="true"]');
