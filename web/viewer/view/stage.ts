@@ -23,7 +23,7 @@ import type { Theme } from './base/theme';
 /** Space around the scene in the first view, relative to its size. */
 const kFirstMargin = 1.08;
 
-/** A picture without a successor for this time is still [ms]. */
+/** After this time without a picture, the last one is still [ms]. */
 const kStillMs = 300;
 
 /** Renderer, camera and its controls. Draws after changes, at most once per animation frame. */
@@ -40,7 +40,8 @@ export class Stage {
   sunShadow: SunShadow | undefined;
   private stale = true;
   private drewLast = false;
-  private drawnAt = 0;
+  /** The first animation frame without a picture after the last picture [ms]. */
+  private idleSince = -Infinity;
   private readonly resolution: Resolution;
   /** The share of the display's rows and columns in the present picture. */
   private scale = 1;
@@ -290,17 +291,18 @@ export class Stage {
     this.controls.update();
     const { drewLast, stale } = this;
     this.drewLast = stale;
+    if (!stale && drewLast) this.idleSince = at;
+    const isStill = !drewLast && at - this.idleSince > kStillMs;
     if (this.resolution.add(at, stale && drewLast, !stale && !drewLast)) this.onResolution();
     // A picture that does not change is drawn once more in full resolution.
-    const isLast = !stale && this.scale < 1 && at - this.drawnAt > kStillMs;
+    const isLast = !stale && this.scale < 1 && isStill;
     if (!stale && !isLast) return;
     const isWarm = this.warmUp.advance(this.camera, (mesh) => this.targetOf(mesh));
     if (this.canvas.dataset.warm !== String(isWarm)) this.canvas.dataset.warm = String(isWarm);
     if (!isWarm) return;
     if (isLast) this.setScale(1);
-    else if (drewLast) this.setScale(this.resolution.scale);
+    else if (!isStill) this.setScale(this.resolution.scale);
     this.stale = false;
-    this.drawnAt = at;
     if (stale) this.onDrawn(at, drewLast);
     this.drawNow();
     this.endWarmUp?.();
