@@ -1,4 +1,4 @@
-import { Ray, Vector3 } from 'three';
+import { Mesh, PlaneGeometry, Ray, ShaderMaterial, Vector3 } from 'three';
 import { expect, it } from 'vitest';
 import { BodyKind } from '../../../web/client/index';
 import type { Frame } from '../../../web/client/index';
@@ -65,6 +65,18 @@ it('frames the space around rigid bodies, and follows them', () => {
   expect(world.framed.min.x).toBeLessThan(0.2); // it shrinks slowly
   show(0.8, 20);
   expect(world.framed.min.x).toBeGreaterThan(0.5);
+});
+
+it('draws the ground before the floor of the vat, which covers it', () => {
+  const meshes: Mesh[] = [];
+  worldWith('rigid', 0.1).group.traverse((object) => {
+    if (object instanceof Mesh) meshes.push(object);
+  });
+  const isGround = ({ material }: Mesh): boolean =>
+    material instanceof ShaderMaterial && 'ground' in material.uniforms;
+  const order = (mesh: Mesh | undefined): number | undefined => mesh?.renderOrder;
+  const floor = meshes.find(({ geometry }) => geometry instanceof PlaneGeometry);
+  expect(order(meshes.find(isGround))).toBeLessThan(order(floor)!);
 });
 
 const width = ({ framed }: World): number => framed.max.x - framed.min.x;

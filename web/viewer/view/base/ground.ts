@@ -109,7 +109,7 @@ export class Ground {
       depthWrite: false,
     });
     this.mesh = screenMesh(material);
-    this.mesh.renderOrder = 1; // only the pixels that no opaque object covers
+    this.mesh.renderOrder = -1; // below the floor of the vat, which writes no depths
     this.paint(look);
   }
 
