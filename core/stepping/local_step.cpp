@@ -17,6 +17,7 @@
 #include "core/solid/springs.h"
 #include "core/state/kick_drift.h"
 #include "core/stepping/liquid_solver.h"
+#include "core/stepping/local_levels.h"
 #include "core/support/check.h"
 
 namespace vat {
