@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "core/device/gas/gas_method.h"
 #include "core/device/incompressible/incompressible_method.h"
 #include "core/device/kernel_source.h"
 #include "core/device/opencl/program.h"
@@ -28,6 +29,7 @@ struct MethodKind {
 
 MethodKind kind_of(const Model& model) {
   if (model.liquid_count == 0) return {&bytes_for_solids, &make_solid_method};
+  if (!model.is_coupled) return {&bytes_for_gas, &make_gas_method};
   if (model.is_incompressible) return {&bytes_for_incompressible, &make_incompressible_method};
   return {&bytes_for_tait, &make_tait_method};
 }

@@ -27,6 +27,7 @@ class Missing {
   void check_bodies();
   void check_world();
   void check_liquid();
+  void check_gas();
   void check_solids();
   Errors take() && { return std::move(errors_); }
   bool any() const { return !errors_.empty(); }
@@ -56,7 +57,7 @@ void Missing::check_body(std::size_t index) {
          "must be liquid, or rigid and fixed, in a scene with an incompressible liquid");
   reject(!has_liquid && body.kind == BodyKind::liquid, path + "/kind",
          "must be deformable or rigid in a scene whose liquids have no particles");
-  if (body.kind == BodyKind::liquid && has_liquid) {
+  if (body.kind == BodyKind::liquid && model_.is_coupled) {
     reject(model_.bodies[index].material != model_.material[0], path + "/material",
            "must be the material of the other liquids");
   }
@@ -67,11 +68,10 @@ void Missing::check_body(std::size_t index) {
   reject(body.motion.has_value() && !body.angular_velocity.isZero(0), path + "/angular_velocity",
          "must be 0 for a driven body");
   reject(body.axle.has_value(), path + "/axle", "must be absent");
-  reject(body.release > 0 && !body.fixed, path + "/release", "must be 0");
-  if (!body.fixed) return;
-  reject(!body.velocity.isZero(0), path + "/velocity", "must be 0 for a fixed body");
+  if (!body.fixed && body.release == 0) return;
+  reject(!body.velocity.isZero(0), path + "/velocity", "must be 0 for a fixed or held body");
   reject(!body.angular_velocity.isZero(0), path + "/angular_velocity",
-         "must be 0 for a fixed body");
+         "must be 0 for a fixed or held body");
 }
 
 void Missing::check_bodies() {
@@ -87,9 +87,13 @@ void Missing::check_world() {
   reject(scene_.sleeping.has_value(), "/sleeping", "must be absent");
 }
 
+void Missing::check_gas() {
+  reject(may_solve_viscosity(model_), "/numerics/step", "must resolve the viscosity of the liquid");
+  reject(!model_.no_slip_walls.empty(), "/vat/walls", "must be slip walls with gas");
+  check_solids();
+}
+
 void Missing::check_liquid() {
-  reject(scene_.pressure_solver == PressureSolver::gas, "/pressure_solver",
-         "must be tait or incompressible");
   reject(scene_.kernel != KernelId::wendland_c2, "/kernel", "must be wendland_c2");
   reject(scene_.pair_precision != PairPrecision::single_precision, "/pair_precision",
          "must be single");
@@ -143,7 +147,13 @@ Errors find_features_not_on_device(const Model& model) {
   missing.check_bodies();
   if (missing.any()) return std::move(missing).take();
   missing.check_world();
-  model.liquid_count > 0 ? missing.check_liquid() : missing.check_solids();
+  if (model.liquid_count == 0) {
+    missing.check_solids();
+  } else if (model.is_coupled) {
+    missing.check_liquid();
+  } else {
+    missing.check_gas();
+  }
   return std::move(missing).take();
 }
 

@@ -35,7 +35,8 @@ class StepEngine {
   virtual Status bind(std::shared_ptr<const Model> model) = 0;
 
   /// Takes `steps` > 0 nominal steps of the bound model. Returns false if the device cannot take
-  /// them: a step fails (see GuardEvent), or users exert forces on bodies. The device then has the
+  /// them: a step fails (see GuardEvent), a held body is released, or users exert forces on bodies.
+  /// The device then has the
   /// state before the call. Fails with the code "device_failed" if the device is lost.
   virtual Result<bool> advance(const EngineInput& input, std::uint32_t steps) = 0;
 

@@ -1,5 +1,7 @@
 #include "core/device/common/verlet_method.h"
 
+#include <algorithm>
+
 #include "core/support/check.h"
 
 namespace vat {
@@ -33,9 +35,16 @@ bool VerletMethod::take_nominal_steps(const NominalSteps& steps, AdvanceReport& 
   return true;
 }
 
+bool VerletMethod::releases_body(std::uint64_t first, std::uint32_t steps) const {
+  return std::ranges::any_of(model_->rigid_bodies, [&](const RigidModel& rigid) {
+    return rigid.free_from != kNever && rigid.free_from > first && rigid.free_from <= first + steps;
+  });
+}
+
 bool VerletMethod::take_steps(const EngineInput& input, std::uint32_t steps) {
   VAT_CHECK(steps > 0);
   const State& state = input.state;
+  if (releases_body(state.step_count, steps)) return false;
   if (!input.continues) write(state);
   save();
   counters().clear();

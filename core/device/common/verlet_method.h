@@ -57,6 +57,10 @@ class VerletMethod : public DeviceMethod {
   void take_step(StepMoment moment, Real end, AdvanceReport& report);
 
  private:
+  /// Returns whether a body is released in or after one of these steps. The kept forces do not act
+  /// on a body that was held; see SimulationImpl::take_guarded_steps().
+  bool releases_body(std::uint64_t first, std::uint32_t steps) const;
+
   const std::shared_ptr<const Model> model_;
 };
 

@@ -25,18 +25,22 @@ bool needs_iteration(const Damping* damping, global const DampingProgress* progr
   return progress->error > permitted && progress->iterations < damping->most_iterations;
 }
 
-// Begins a solve. `partial` receives <r, M^-1 r> and the sum of m v^2, and `momenta` that of m v.
+// Begins a solve. Forces depend on the velocities `predicted`, and `velocity` are those before the
+// forces act. `partial` receives <r, M^-1 r>, the sum of m v^2 and that of m (velocity - v)^2, and
+// `momenta` that of m v, with v = predicted.
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void begin_damping(
     const Damping damping, global const double* mass, global const double* mobility,
-    global const double* velocity, global const double* force, global double* change,
-    global double* change_of_force, global double* residual, global double* direction,
+    global const double* velocity, global const double* predicted, global const double* force,
+    global double* change, global double* change_of_force, global double* residual, global double* direction,
     global double4* partial, global double4* momenta) {
   local double4 sums[GROUP];
   const int i = get_global_id(0);
   double4 own = 0;
   double4 momentum = 0;
   if (i < damping.count) {
-    const double3 r = damping.dt * vector_at(force, i);
+    const double3 v = vector_at(predicted, i);
+    const double3 past = vector_at(velocity, i) - v;
+    const double3 r = damping.dt * vector_at(force, i) + mass[i] * past;
     const double3 d = mobility[i] * r;
     store_vector((double3)(0), change, i);
     store_vector((double3)(0), change_of_force, i);
@@ -44,10 +48,10 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void begin_damping(
     store_vector(d, direction, i);
     own.x = product(r, d);
     if (mobility[i] > 0) {
-      const double3 v = vector_at(velocity, i);
       momentum.xyz = mass[i] * v;
       own.y = mass[i] * product(v, v);
     }
+    own.z = mass[i] * product(past, past);
   }
   write_partial(sums, own, partial);
   barrier(CLK_LOCAL_MEM_FENCE);
@@ -66,7 +70,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void open_damping(
   const double of_mean =
       damping.total_mass > 0 ? product(momentum, momentum) / damping.total_mass : 0;
   progress->error = total.x;
-  progress->size = 0;
+  progress->size = total.z;
   progress->permitted = damping.velocity_tolerance2 * (total.y - of_mean);
   progress->share = 0;
   progress->iterations = 0;
@@ -130,8 +134,8 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_damping_leng
 // Advances along the direction. `partial` receives the new error and size.
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void advance_damping(
     const Damping damping, global const DampingProgress* progress, global const double* mass,
-    global const double* mobility, global const double* direction,
-    global const double* multiplied, global double* change, global double* change_of_force,
+    global const double* mobility, global const double* velocity, global const double* predicted,
+    global const double* direction, global const double* multiplied, global double* change, global double* change_of_force,
     global double* residual, global double4* partial) {
   local double4 sums[GROUP];
   if (!progress->is_open) return;
@@ -147,7 +151,8 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void advance_damping(
     store_vector(vector_at(change_of_force, i) + length * q, change_of_force, i);
     store_vector(r, residual, i);
     own.x = mobility[i] * product(r, r);
-    own.y = mass[i] * product(w, w);
+    const double3 gained = w - (vector_at(velocity, i) - vector_at(predicted, i));
+    own.y = mass[i] * product(gained, gained);
   }
   write_partial(sums, own, partial);
 }

@@ -59,11 +59,15 @@ DeviceDamping::DeviceDamping(Program& program, const Model& model)
       momenta_(program, bytes_of_sums(model)),
       progress_(program, sizeof(DampingProgress)) {
   program.fill_with_zeros(spin_change_, model.bodies.size() * kColumn);
-  for (std::size_t i = model.liquid_count; i < model.free_count; ++i) {
+}
+
+void DeviceDamping::find_mass(const Model& model, std::uint64_t step) {
+  total_mass_ = 0;
+  for (std::size_t i = SolidRange(model).first; i < model.free_count; ++i) {
     if (model.inverse_mass[i] > 0) total_mass_ += model.mass[i];
   }
   for (const RigidModel& rigid : model.rigid_bodies) {
-    if (rigid.free_from == 0) total_mass_ += rigid.mass;
+    if (!rigid.is_held(step)) total_mass_ += rigid.mass;
   }
 }
 
@@ -78,8 +82,8 @@ void DeviceDamping::begin(const DampingParameters& damping, const PlacedSolids& 
   const DeviceRigidBodies& r = solids.rigid;
   if (free_ > 0) {
     program_.run("begin_damping", free_, damping, solids.tables.mass, solids.tables.mobility,
-                 solids.predicted, force, change_, change_of_force_, residual_, direction_,
-                 partial_, momenta_);
+                 solids.velocity, solids.predicted, force, change_, change_of_force_, residual_,
+                 direction_, partial_, momenta_);
   }
   if (bodies_ > 0) {
     program_.run("begin_damping_of_bodies", bodies_, damping, number_of(bodies_), number_of(count_),
@@ -116,8 +120,9 @@ void DeviceDamping::iterate(const SolidParameters& p, const DampingParameters& d
   }
   program_.run("find_damping_length", kOne, groups_of(count_) + bodies, partial_, progress_);
   if (free_ > 0) {
-    program_.run("advance_damping", free_, damping, progress_, t.mass, t.mobility, direction_,
-                 multiplied_, change_, change_of_force_, residual_, partial_);
+    program_.run("advance_damping", free_, damping, progress_, t.mass, t.mobility, solids.velocity,
+                 solids.predicted, direction_, multiplied_, change_, change_of_force_, residual_,
+                 partial_);
   }
   if (bodies_ > 0) {
     program_.run("advance_damping_of_bodies", bodies_, damping, bodies, first, groups_of(free_),

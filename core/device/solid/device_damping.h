@@ -27,6 +27,7 @@ struct PlacedSolids {
   const opencl::Buffer& order;
   const opencl::Buffer& sorted_position;
   const opencl::Buffer& position;
+  const opencl::Buffer& velocity;
   const opencl::Buffer& predicted;  ///< velocities in forces
   const DeviceRigidBodies& rigid;
 };
@@ -41,6 +42,8 @@ class DeviceDamping {
   /// Returns the bytes of the buffers.
   static std::size_t bytes_for(const Model& model);
 
+  /// Sums the masses of the particles and bodies that can move in this step.
+  void find_mass(const Model& model, std::uint64_t step);
   /// Changes the forces on particles, `force`, and on rigid bodies. The forces act for `dt` [s].
   /// `p` are the parameters of the forces. Returns the number of iterations.
   std::uint32_t solve(const SolidParameters& p, const PlacedSolids& solids, Real dt,

@@ -14,25 +14,6 @@ namespace {
 using opencl::Buffer;
 using opencl::Program;
 
-/// The struct Rigid of rigid.cl.
-struct RigidConstants {
-  double mass;
-  double inverse_mass;
-  double extent;
-  double greatest_speed;
-  double greatest_inverse_moment;
-  double inertia[9];
-  double inverse_inertia[9];
-  double principal_axes[4];
-  double inverse_moments[3];
-  std::int32_t splitting[3];
-  std::int32_t begin;
-  std::int32_t end;
-  std::int32_t body;
-  std::int32_t is_held;
-  std::int32_t padding;
-};
-
 /// The struct Drive of rigid.cl.
 struct Drive {
   double way[3];
@@ -42,9 +23,17 @@ struct Drive {
 constexpr std::size_t kRigidVector = 3 * sizeof(double);
 constexpr std::size_t kResultant = 2 * kRigidVector;
 
-RigidConstants constants_of(const Model& model, const GuardBounds& bounds, std::size_t b) {
+std::size_t at_least_one(std::size_t count) {
+  return std::max<std::size_t>(1, count);
+}
+
+}  // namespace
+
+DeviceRigidBodies::Constants DeviceRigidBodies::constants_of(const Model& model,
+                                                             const GuardBounds& bounds,
+                                                             std::size_t b) {
   const RigidModel& rigid = model.rigid_bodies[b];
-  RigidConstants c{};
+  Constants c{};
   c.mass = rigid.mass;
   c.inverse_mass = rigid.inverse_mass;
   c.extent = bounds.extent[b];
@@ -55,22 +44,15 @@ RigidConstants constants_of(const Model& model, const GuardBounds& bounds, std::
   store(rigid.principal_axes, c.principal_axes);
   store(rigid.inverse_moments, c.inverse_moments);
   std::ranges::copy(rigid.splitting, c.splitting);
-  c.begin = static_cast<std::int32_t>(rigid.particles.begin - model.liquid_count);
-  c.end = static_cast<std::int32_t>(rigid.particles.end - model.liquid_count);
+  c.begin = static_cast<std::int32_t>(rigid.particles.begin - SolidRange(model).first);
+  c.end = static_cast<std::int32_t>(rigid.particles.end - SolidRange(model).first);
   c.body = static_cast<std::int32_t>(rigid.body);
-  c.is_held = rigid.free_from > 0 ? 1 : 0;
   return c;
 }
 
-std::size_t at_least_one(std::size_t count) {
-  return std::max<std::size_t>(1, count);
-}
-
-}  // namespace
-
 DeviceRigidBodies::DeviceRigidBodies(Program& program, const Model& model,
                                      const GuardBounds& bounds)
-    : rigid(program, at_least_one(model.rigid_bodies.size()) * sizeof(RigidConstants)),
+    : rigid(program, at_least_one(model.rigid_bodies.size()) * sizeof(Constants)),
       rigid_of(program,
                at_least_one(model.particle_count - model.free_count) * sizeof(std::int32_t)),
       poses(program, at_least_one(model.rigid_bodies.size()) * sizeof(Pose)),
@@ -87,27 +69,25 @@ DeviceRigidBodies::DeviceRigidBodies(Program& program, const Model& model,
       saved_force_(program, at_least_one(count_) * kResultant) {
   program.fill_with_zeros(spins, model.bodies.size() * kRigidVector);
   if (count_ == 0) return;
-  std::vector<RigidConstants> constants;
   std::vector<std::int32_t> owners(particles_);
   for (std::size_t b = 0; b < count_; ++b) {
-    constants.push_back(constants_of(model, bounds, b));
+    constants_.push_back(constants_of(model, bounds, b));
     const IndexRange& particles = model.rigid_bodies[b].particles;
     std::fill(owners.begin() + (particles.begin - model.free_count),
               owners.begin() + (particles.end - model.free_count), static_cast<std::int32_t>(b));
   }
-  program.write(rigid, std::span<const RigidConstants>(constants));
   program.write(rigid_of, std::span<const std::int32_t>(owners));
   program.write(local_position_, std::span<const Vec3>(model.local_position));
 }
 
 std::size_t DeviceRigidBodies::bytes_for(const Model& model) {
-  return model.rigid_bodies.size() * (sizeof(RigidConstants) + 2 * (sizeof(Pose) + kResultant)) +
+  return model.rigid_bodies.size() * (sizeof(Constants) + 2 * (sizeof(Pose) + kResultant)) +
          (model.particle_count - model.free_count) * (kRigidVector + sizeof(std::int32_t)) +
          model.bodies.size() * 2 * kRigidVector +
          SolidRange(model).count * (kRigidVector + 2 * sizeof(double));
 }
 
-void DeviceRigidBodies::write(const State& state) {
+void DeviceRigidBodies::write(const Model& model, const State& state) {
   VAT_CHECK(state.now.rigid.size() == count_ && state.forces.rigid_force.size() == count_ &&
             state.forces.rigid_torque.size() == count_);
   if (count_ == 0) return;
@@ -115,6 +95,7 @@ void DeviceRigidBodies::write(const State& state) {
   read_forces_.clear();
   for (std::size_t b = 0; b < count_; ++b) {
     const RigidState& body = state.now.rigid[b];
+    constants_[b].is_held = model.rigid_bodies[b].is_held(state.step_count) ? 1 : 0;
     Pose& pose = read_poses_.emplace_back();
     store(body.center_of_mass, pose.center);
     store(body.orientation, pose.orientation);
@@ -123,6 +104,7 @@ void DeviceRigidBodies::write(const State& state) {
     read_forces_.push_back(state.forces.rigid_force[b]);
     read_forces_.push_back(state.forces.rigid_torque[b]);
   }
+  program_.write(rigid, std::span<const Constants>(constants_));
   program_.write(poses, std::span<const Pose>(read_poses_));
   program_.write(force, std::span<const Vec3>(read_forces_));
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "core/device/opencl/program.h"
@@ -22,7 +23,8 @@ class DeviceRigidBodies {
   /// Returns the number of bodies.
   std::size_t count() const { return count_; }
 
-  void write(const State& state);
+  /// Writes the motion and forces, and which bodies are held in the next step.
+  void write(const Model& model, const State& state);
   /// Reads the poses and forces. The functions copy_to() then write them.
   void read();
   void copy_to(State& state) const;
@@ -52,6 +54,24 @@ class DeviceRigidBodies {
   opencl::Buffer loads;   ///< ContactLoad, by particle
 
  private:
+  /// The struct Rigid of rigid.cl.
+  struct Constants {
+    double mass;
+    double inverse_mass;
+    double extent;
+    double greatest_speed;
+    double greatest_inverse_moment;
+    double inertia[9];
+    double inverse_inertia[9];
+    double principal_axes[4];
+    double inverse_moments[3];
+    std::int32_t splitting[3];
+    std::int32_t begin;
+    std::int32_t end;
+    std::int32_t body;
+    std::int32_t is_held;
+    std::int32_t padding;
+  };
   /// The struct Pose of rigid.cl.
   struct Pose {
     double center[3];
@@ -60,12 +80,14 @@ class DeviceRigidBodies {
     double angular_momentum[3];
   };
 
+  static Constants constants_of(const Model& model, const GuardBounds& bounds, std::size_t b);
   void drive_body(std::size_t b, const Vec3& way, const Vec3& velocity);
 
   opencl::Program& program_;
   const std::size_t count_;
   const std::size_t particles_;  ///< of rigid bodies
   opencl::Buffer local_position_, speeds_, saved_poses_, saved_force_;
+  std::vector<Constants> constants_;
   std::vector<Pose> read_poses_;
   std::vector<Vec3> read_forces_;  ///< force and torque of each body
 };

@@ -68,7 +68,8 @@ void DeviceSolids::write(const State& state) {
   bound_ = state.bound;
   VAT_CHECK(state.forces.particle.size() == model_.particle_count);
   program_.write(force_, std::span<const Vec3>(state.forces.particle).subspan(range_.first));
-  rigid_.write(state);
+  rigid_.write(model_, state);
+  damping_.find_mass(model_, state.step_count);
 }
 
 void DeviceSolids::read() {
@@ -113,7 +114,7 @@ void DeviceSolids::move(const StepMoment& start, Real end, Real step,
                         const opencl::Buffer& counters) {
   const SolidTables& t = tables_;
   const SolidParameters before = geometry_.at(model_, start);
-  const SolidParameters after = geometry_.at(model_, {end, 0, 0, 0, 0});
+  const SolidParameters after = parameters(end);
   rigid_.move(before, step, counters);
   start.drift > 0 ? rigid_.drive(model_, start.time, end)
                   : rigid_.begin_drive(model_, start.time, step);
@@ -134,11 +135,11 @@ void DeviceSolids::move(const StepMoment& start, Real end, Real step,
 
 void DeviceSolids::find_forces(Real end) {
   const SolidTables& t = tables_;
-  program_.run("find_solid_forces", range_.count, geometry_.at(model_, {end, 0, 0, 0, 0}),
-               cells_.begins, order_, sorted_position_, motion_.position, predicted_, rigid_.spins,
-               t.mass, t.mobility, t.radius, t.body_of, t.bodies, t.laws, t.exclusion_begin,
-               t.exclusions, t.spring_begin, t.springs, t.corner_begin, t.corners, t.cells,
-               pressure_, force_, rigid_.torque, rigid_.loads, partial_);
+  program_.run("find_solid_forces", range_.count, parameters(end), cells_.begins, order_,
+               sorted_position_, motion_.position, predicted_, rigid_.spins, t.mass, t.mobility,
+               t.radius, t.body_of, t.bodies, t.laws, t.exclusion_begin, t.exclusions,
+               t.spring_begin, t.springs, t.corner_begin, t.corners, t.cells, pressure_, force_,
+               rigid_.torque, rigid_.loads, partial_);
 }
 
 void DeviceSolids::gather() {
@@ -163,9 +164,7 @@ bool DeviceSolids::must_solve(Real dt) const {
 }
 
 std::uint32_t DeviceSolids::solve_damping(Real end, Real dt) {
-  const PlacedSolids solids{tables_,          cells_,     order_, sorted_position_,
-                            motion_.position, predicted_, rigid_};
-  return damping_.solve(geometry_.at(model_, {end, 0, 0, 0, 0}), solids, dt, force_);
+  return damping_.solve(parameters(end), placed(), dt, force_);
 }
 
 void DeviceSolids::finish(const StepMoment& moment, Real step, const opencl::Buffer& counters) {

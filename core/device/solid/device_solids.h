@@ -16,8 +16,8 @@
 
 namespace vat {
 
-/// The deformable and rigid bodies of a model on a device: their state, and the parts of a step. A
-/// step calls move(), find_forces(), gather() and then, if must_solve() holds, solve_damping(). The
+/// The bodies of a model on a device, see SolidRange: their state, and the parts of a step. A step
+/// calls move(), find_forces(), gather() and then, if must_solve() holds, solve_damping(). The
 /// functions throw opencl::DeviceFailure.
 class DeviceSolids {
  public:
@@ -49,6 +49,14 @@ class DeviceSolids {
   std::uint32_t solve_damping(Real end, Real dt);
   /// Ends the last step of a call at its time.
   void finish(const StepMoment& moment, Real step, const opencl::Buffer& counters);
+
+  /// Returns the parameters of the kernels of forces at the time `end` [s].
+  SolidParameters parameters(Real end) const { return geometry_.at(model_, {end, 0, 0, 0, 0}); }
+  /// Returns the particles after move().
+  PlacedSolids placed() const {
+    return {tables_,          cells_,           order_,     sorted_position_,
+            motion_.position, motion_.velocity, predicted_, rigid_};
+  }
 
   // Buffers in the order of particles:
   const opencl::Buffer& position() const { return motion_.position; }

@@ -171,6 +171,8 @@ void add_contacts(const Solids* p, global const int* begins, global const int* o
         const bool is_own = body == t->body;
         if (j == t->index || (is_own && !mine.touches_itself)) continue;
         const int other = bodies[body].material;
+        // Within a liquid, there are other forces.
+        if (t->index < p->liquids && j < p->liquids && mine.material == other) continue;
         // The laws within bodies follow those between materials.
         const ContactLaw law =
             laws[is_own ? p->materials * p->materials + mine.material

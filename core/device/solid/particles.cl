@@ -1,6 +1,6 @@
-// Particles of deformable and rigid bodies: parameters, steps, and cells. One work-item computes one
+// Particles with contacts, see SolidRange: parameters, steps, and cells. One work-item computes one
 // particle. All numbers are in double precision. Free particles precede those of rigid bodies. The
-// index of a particle does not count the liquid.
+// index of a particle does not count a liquid without contacts.
 
 typedef struct {
   double origin[3];
@@ -19,6 +19,7 @@ typedef struct {
   double opening;
   double drift;
   double prediction;
+  double prediction_of_liquids;
   double reach;
   int cells[3];
   int walls;
@@ -28,6 +29,7 @@ typedef struct {
   int materials;
   int dimensions;
   int first;
+  int liquids;
 } Solids;
 
 typedef struct {
@@ -110,7 +112,7 @@ void end_solid_step(const Solids* p, int i, global const double* position,
 }
 
 // Ends a step, and begins the next one with a kick and a drift. Counts the particles of each cell.
-// The velocities that forces depend on are kicked by p.prediction.
+// The velocities that forces depend on are kicked by the prediction.
 kernel void move_solids(const Solids p, global double* position, global double* velocity,
                         global double* predicted, global const double* force,
                         global const double* mobility, global const int* body_of,
@@ -124,12 +126,13 @@ kernel void move_solids(const Solids p, global double* position, global double* 
     const double mine = mobility[i];
     end_solid_step(&p, i, position, velocity, force, mine, bodies[body_of[i]].greatest_speed2, x,
                    v, status);
+    const double prediction = i < p.liquids ? p.prediction_of_liquids : p.prediction;
     for (int k = 0; k < 3; ++k) {
       v[k] += (p.opening * mine) * force[3 * i + k];
       x[k] += p.drift * v[k];
       position[3 * i + k] = x[k];
       velocity[3 * i + k] = v[k];
-      predicted[3 * i + k] = v[k] + (p.prediction * mine) * force[3 * i + k];
+      predicted[3 * i + k] = v[k] + (prediction * mine) * force[3 * i + k];
     }
   } else {
     for (int k = 0; k < 3; ++k) x[k] = position[3 * i + k];

@@ -7,6 +7,7 @@
 #include "core/device/common/kernel_values.h"
 #include "core/device/common/vat_box.h"
 #include "core/laws/vat_motion.h"
+#include "core/liquid/gas/liquid.h"
 #include "core/model/acting_forces.h"
 #include "core/support/check.h"
 
@@ -20,7 +21,7 @@ constexpr Real kMostSolidCells = 4096;  // in addition to those in proportion to
 bool solids_move(const Model& model) {
   return model.free_count > model.liquid_count ||
          std::ranges::any_of(model.rigid_bodies, [](const RigidModel& rigid) {
-           return rigid.free_from == 0 || rigid.motion;
+           return rigid.free_from != kNever || rigid.motion;
          });
 }
 
@@ -29,6 +30,7 @@ void SolidGeometry::set_grid(const Model& model) {
   const Real most = kMostSolidCells + 4 * static_cast<Real>(SolidRange(model).count);
   const Real extent = (high - low).maxCoeff();
   Real cell = std::max(model.contact_reach, extent / kMostSolidCells);
+  if (SolidRange(model).liquids > 0) cell = std::max(cell, greatest_support(model));
   if (cell == 0) cell = 1;  // a single particle
   Real count = 0;
   do {
@@ -69,6 +71,7 @@ SolidGeometry::SolidGeometry(const Model& model, const GuardBounds& bounds) {
   constant_.free = static_cast<std::int32_t>(range.free);
   constant_.count = static_cast<std::int32_t>(range.count);
   constant_.first = static_cast<std::int32_t>(range.first);
+  constant_.liquids = static_cast<std::int32_t>(range.liquids);
   constant_.materials = static_cast<std::int32_t>(scene.materials.size());
   constant_.dimensions = scene.dimensions;
 }
@@ -87,6 +90,8 @@ SolidParameters SolidGeometry::at(const Model& model, const StepMoment& moment) 
   p.opening = moment.opening;
   p.drift = moment.drift;
   p.prediction = moment.prediction;
+  // A solve starts from predicted velocities of liquids; see evaluate_at_end().
+  p.prediction_of_liquids = model.damping.any ? moment.opening : 0;
   return p;
 }
 

@@ -27,26 +27,31 @@ struct SolidParameters {
   double opening;     ///< duration of the kick at the start of a step [s]
   double drift;       ///< [s]
   double prediction;  ///< duration of the kick of velocities in forces [s]
-  double reach;       ///< Model::contact_reach; 0: no contacts [m]
+  double prediction_of_liquids;
+  double reach;  ///< Model::contact_reach; 0: no contacts [m]
   std::int32_t cells[3];
   std::int32_t walls;       ///< bit w: wall w exists
   std::int32_t walls_push;  ///< 1: walls exert forces
-  std::int32_t free;        ///< free solid particles
-  std::int32_t count;       ///< all solid particles
+  std::int32_t free;        ///< free particles
+  std::int32_t count;       ///< all particles
   std::int32_t materials;
   std::int32_t dimensions;
-  std::int32_t first;  ///< index of the first solid particle in the model
+  std::int32_t first;    ///< index of the first of these particles in the model
+  std::int32_t liquids;  ///< particles of gas-like liquids
 };
 
-/// The solid particles of a model, which are its last particles. The kernels of solids count from
-/// the first of them. Free particles precede those of rigid bodies.
+/// The particles of a model with contacts, which are its last particles: those of solids and of
+/// gas-like liquids. Their kernels count from the first of them. Free particles precede those of
+/// rigid bodies, and liquids precede deformable bodies.
 struct SolidRange {
   explicit SolidRange(const Model& model)
-      : first(model.liquid_count),
-        free(model.free_count - model.liquid_count),
-        count(model.particle_count - model.liquid_count) {}
+      : first(model.is_coupled ? model.liquid_count : 0),
+        liquids(model.liquid_count - first),
+        free(model.free_count - first),
+        count(model.particle_count - first) {}
 
-  std::size_t first;  ///< index of the first solid particle in the model
+  std::size_t first;    ///< index of the first of these particles in the model
+  std::size_t liquids;  ///< particles of gas-like liquids
   std::size_t free;
   std::size_t count;
 };
@@ -54,7 +59,7 @@ struct SolidRange {
 /// Returns whether any solid can move. In a liquid, solids at rest need less memory and work.
 bool solids_move(const Model& model);
 
-/// Computes the parameters of kernels for the deformable and rigid bodies of a model.
+/// Computes the parameters of kernels for the particles of SolidRange.
 class SolidGeometry {
  public:
   SolidGeometry(const Model& model, const GuardBounds& bounds);

@@ -2,36 +2,13 @@
 
 #include <utility>
 
-#include "core/device/common/verlet_method.h"
-#include "core/device/solid/device_solids.h"
-
 namespace vat {
-namespace {
 
 using opencl::Program;
 
-class SolidMethod : public VerletMethod {
- public:
-  SolidMethod(Program& program, std::shared_ptr<const Model> bodies, const GuardBounds& bounds)
-      : VerletMethod(std::move(bodies)), counters_(program), solids_(program, model(), bounds) {}
-
-  void read(State& state) override;
-
- private:
-  DeviceCounters& counters() override { return counters_; }
-  void write(const State& state) override { solids_.write(state); }
-  void save() override { solids_.save(); }
-  void restore() override { solids_.restore(); }
-  void evaluate(const StepMoment& start, Real end) override;
-  bool must_solve(Real dt) const override { return solids_.must_solve(dt); }
-  std::uint32_t solve_damping(Real end, Real dt) override { return solids_.solve_damping(end, dt); }
-  void finish(const StepMoment& moment) override {
-    solids_.finish(moment, model().scene.numerics.step, counters_.buffer);
-  }
-
-  DeviceCounters counters_;
-  DeviceSolids solids_;
-};
+SolidMethod::SolidMethod(Program& program, std::shared_ptr<const Model> bodies,
+                         const GuardBounds& bounds)
+    : VerletMethod(std::move(bodies)), counters_(program), solids_(program, model(), bounds) {}
 
 void SolidMethod::read(State& state) {
   solids_.read();
@@ -41,13 +18,19 @@ void SolidMethod::read(State& state) {
   if (model().damping.any) state.bound = solids_.bound();
 }
 
-void SolidMethod::evaluate(const StepMoment& start, Real end) {
+void SolidMethod::move(const StepMoment& start, Real end) {
   solids_.move(start, end, model().scene.numerics.step, counters_.buffer);
+}
+
+void SolidMethod::evaluate(const StepMoment& start, Real end) {
+  move(start, end);
   solids_.find_forces(end);
   solids_.gather();
 }
 
-}  // namespace
+void SolidMethod::finish(const StepMoment& moment) {
+  solids_.finish(moment, model().scene.numerics.step, counters_.buffer);
+}
 
 std::size_t bytes_for_solids(const Model& model) {
   return DeviceSolids::bytes_for(model);

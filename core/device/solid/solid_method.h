@@ -1,17 +1,50 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 
-#include "core/device/common/device_method.h"
+#include "core/device/common/verlet_method.h"
 #include "core/device/opencl/program.h"
+#include "core/device/solid/device_solids.h"
+#include "core/guard/guard.h"
+#include "core/model/model.h"
 
 namespace vat {
+
+/// The steps of the bodies of DeviceSolids by velocity Verlet. The functions throw
+/// opencl::DeviceFailure.
+class SolidMethod : public VerletMethod {
+ public:
+  SolidMethod(opencl::Program& program, std::shared_ptr<const Model> bodies,
+              const GuardBounds& bounds);
+
+  void read(State& state) override;
+
+ protected:
+  void evaluate(const StepMoment& start, Real end) override;
+  /// Moves the bodies from start.time to `end` [s].
+  void move(const StepMoment& start, Real end);
+
+  DeviceSolids& solids() { return solids_; }
+
+ private:
+  DeviceCounters& counters() override { return counters_; }
+  void write(const State& state) override { solids_.write(state); }
+  void save() override { solids_.save(); }
+  void restore() override { solids_.restore(); }
+  bool must_solve(Real dt) const override { return solids_.must_solve(dt); }
+  std::uint32_t solve_damping(Real end, Real dt) override { return solids_.solve_damping(end, dt); }
+  void finish(const StepMoment& moment) override;
+
+  DeviceCounters counters_;
+  DeviceSolids solids_;
+};
 
 /// Returns the bytes that the steps of a model without liquids need on the device.
 std::size_t bytes_for_solids(const Model& model);
 
-/// Returns the steps of deformable and rigid bodies by velocity Verlet, with the kernels of
-/// core/device/solid. Throws opencl::DeviceFailure.
+/// Returns the steps of deformable and rigid bodies, with the kernels of core/device/solid. Throws
+/// opencl::DeviceFailure.
 std::unique_ptr<DeviceMethod> make_solid_method(opencl::Program& program,
                                                 std::shared_ptr<const Model> model);
 

@@ -10,7 +10,6 @@
 #include "core/support/check.h"
 
 namespace vat {
-namespace {
 
 Real greatest_support(const Model& model) {
   Real support = 0;
@@ -21,8 +20,6 @@ Real greatest_support(const Model& model) {
   }
   return support;
 }
-
-}  // namespace
 
 void sort_liquid(StepContext& c) {
   const std::span<const Vec3> points(c.configuration.position);

@@ -1,8 +1,14 @@
 #pragma once
 
+#include "core/types.h"
+
 namespace vat {
 
+struct Model;
 struct StepContext;
+
+/// Returns the greatest support radius of the liquids of a model [m].
+Real greatest_support(const Model& model);
 
 /// Stage that sorts the liquid particles into cells.
 void sort_liquid(StepContext& context);

@@ -91,6 +91,13 @@ const SceneCase kRigidScenes[] = {
        add_other_ball(scene);
        scene.vat->motion = SlideMotion{{1, 0, 0}, 0.1, 0.2};
      }},
+    {"ball that is held",
+     [](Scene& scene) {
+       scene.bodies[1].release = 1;
+       scene.bodies[1].position.z() = 0.12;
+       scene.bodies[1].velocity.setZero();
+       scene.bodies[1].angular_velocity.setZero();
+     }},
     {"piston", add_piston},
     {"piston in two dimensions",
      [](Scene& scene) {
@@ -329,7 +336,7 @@ TEST(CoupledDevice, RestoresTheStateBeforeAFailedStep) {
 
 TEST(CoupledDevice, RefusesFeaturesThatItLacks) {
   const SceneCase cases[] = {
-      {"/bodies/1/release", [](Scene& s) { s.bodies[1].release = 1; }},
+      {"/bodies/1/velocity", [](Scene& s) { s.bodies[1].release = 1; }},
       {"/bodies/1/axle",
        [](Scene& s) {
          s.bodies[1].axle = Axle{{0, 0, 1}};

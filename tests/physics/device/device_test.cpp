@@ -162,7 +162,6 @@ TEST(Device, RestoresTheStateBeforeAFailedStep) {
 
 TEST(Device, RefusesFeaturesThatItLacks) {
   const SceneCase cases[] = {
-      {"/pressure_solver", [](Scene& s) { s.pressure_solver = PressureSolver::gas; }},
       {"/bodies/1/velocity",
        [](Scene& s) {
          s.materials.push_back(make_material("stone", 2000));

@@ -234,9 +234,35 @@ TEST(RigidDevice, LeavesABodyBeyondAWallToTheCpu) {
   EXPECT_EQ(device.state_hash(), cpu.state_hash());
 }
 
+// The CPU takes the call in which a body is released, or that ends then.
+TEST(RigidDevice, HoldsABodyUntilItsRelease) {
+  constexpr std::uint32_t kRelease = 30;
+  Scene scene = make_heap();
+  scene.bodies[1].release = kRelease * scene.numerics.step;
+  scene.bodies[1].velocity.setZero();
+  scene.bodies[1].angular_velocity.setZero();
+  for (const std::uint32_t before : {kRelease - 1, kRelease}) {
+    SCOPED_TRACE(before);
+    Simulation device = make_on_device(scene);
+    Simulation cpu = make_simulation(scene);
+    const auto advance = [&](std::uint32_t steps) {
+      cpu.advance(steps);
+      return device.advance(steps).device_steps;
+    };
+    EXPECT_EQ(advance(10), 10U);
+    const Vec3 held = device.bodies()[1].pose->center_of_mass;
+    EXPECT_EQ(advance(10), 10U);
+    EXPECT_EQ(device.bodies()[1].pose->center_of_mass, held);
+    EXPECT_EQ(advance(before - 20), before < kRelease ? before - 20 : 0U);
+    EXPECT_EQ(advance(10), before < kRelease ? 0U : 10U);
+    EXPECT_EQ(advance(30), 30U);
+    EXPECT_GT((device.bodies()[1].pose->center_of_mass - held).norm(), 0.1 * kSpacing);
+    EXPECT_LT(difference(device, cpu), rounding_after(before + 40));
+  }
+}
+
 TEST(RigidDevice, RefusesFeaturesThatItLacks) {
   const SceneCase cases[] = {
-      {"/bodies/0/release", [](Scene& s) { s.bodies[0].release = 1; }},
       {"/bodies/0/axle",
        [](Scene& s) {
          s.bodies[0].axle = Axle{{0, 0, 1}};
@@ -249,6 +275,7 @@ TEST(RigidDevice, RefusesFeaturesThatItLacks) {
          s.bodies[0].motion = SlideMotion{{1, 0, 0}, 0.1, 1};
        }},
       {"/bodies/0/velocity", [](Scene& s) { s.bodies[0].fixed = true; }},
+      {"/bodies/0/velocity", [](Scene& s) { s.bodies[0].release = 1; }},
       {"/numerics/control", [](Scene& s) { s.numerics.control = StepControl::adaptive; }},
   };
   expect_refusals(make_heap(), cases);

@@ -1,0 +1,104 @@
+// Forces within gas-like liquids, see core/liquid/gas/liquid.h. The particles of liquids are the
+// first of the bodies, and have the cells, contacts and walls of the others. All numbers are in
+// double precision. Each particle sums over its neighbours in the order of cells.
+
+// The constants of the liquid of a material.
+typedef struct {
+  double support;
+  double density_scale;   // of the kernel Poly6
+  double pressure_slope;  // 3 times the scale of the kernel Spiky
+  double viscosity;       // mu times the scale of the Laplacian of the viscosity kernel
+  double rest_density;
+  double stiffness;       // pressure / excess of density, times the share of the pressure
+} Gas;
+
+typedef struct {
+  double drag;      // of settling, 1/s
+  double still[3];  // velocity that the settling drag leaves
+  int liquids;      // particles of liquids
+} GasStep;
+
+// Runs BODY for each particle `j` in `slot` that is closer to the place `at` than `support`, and of
+// the same material as `i`. `way` is the vector from j to i, and `square` the square of its length.
+#define FOR_EACH_GAS_NEIGHBOUR(BODY)                                           \
+  {                                                                            \
+    const double place[3] = {at.x, at.y, at.z};                                \
+    int low[3];                                                                \
+    int high[3];                                                               \
+    for (int k = 0; k < 3; ++k) {                                              \
+      low[k] = cell_of_solid(&p, place[k] - support, k);                       \
+      high[k] = cell_of_solid(&p, place[k] + support, k);                      \
+    }                                                                          \
+    for (int z = low[2]; z <= high[2]; ++z) {                                  \
+      for (int y = low[1]; y <= high[1]; ++y) {                                \
+        const int row = (z * p.cells[1] + y) * p.cells[0];                     \
+        const int end = begins[row + high[0] + 1];                             \
+        for (int slot = begins[row + low[0]]; slot < end; ++slot) {            \
+          const double3 way = at - sorted_position[slot].xyz;                  \
+          const double square = product(way, way);                             \
+          const int j = order[slot];                                           \
+          if (!(square < support * support) || j == i || j >= step.liquids) continue; \
+          if (bodies[body_of[j]].material != material) continue;               \
+          BODY                                                                 \
+        }                                                                      \
+      }                                                                        \
+    }                                                                          \
+  }
+
+// The volume of each particle, its pressure times the share, and its velocity in forces. All are in
+// the order of cells.
+kernel void find_gas_pressure(const Solids p, const GasStep step, global const int* begins,
+                              global const int* order, global const double4* sorted_position,
+                              global const double* predicted, global const double* mass,
+                              global const int* body_of, global const Body* bodies,
+                              global const Gas* gases, global double2* volume_and_pressure,
+                              global double4* sorted_velocity) {
+  const int own_slot = get_global_id(0);
+  if (own_slot >= p.count) return;
+  const int i = order[own_slot];
+  if (i >= step.liquids) return;
+  const int material = bodies[body_of[i]].material;
+  const Gas gas = gases[material];
+  const double support = gas.support;
+  const double3 at = sorted_position[own_slot].xyz;
+  double sum = mass[i] * (support * support * support * support * support * support);
+  FOR_EACH_GAS_NEIGHBOUR({
+    const double rest = support * support - square;
+    sum += mass[j] * (rest * rest * rest);
+  })
+  const double density = gas.density_scale * sum;
+  volume_and_pressure[own_slot] =
+      (double2)(mass[i] / density, gas.stiffness * fmax(0.0, density - gas.rest_density));
+  sorted_velocity[own_slot] = (double4)(vector_at(predicted, i), 0);
+}
+
+// Adds the forces of pressure, viscosity and settling.
+kernel void add_gas_forces(const Solids p, const GasStep step, global const int* begins,
+                           global const int* order, global const double4* sorted_position,
+                           global const double2* volume_and_pressure,
+                           global const double4* sorted_velocity, global const double* mass,
+                           global const int* body_of, global const Body* bodies,
+                           global const Gas* gases, global double* force) {
+  const int own_slot = get_global_id(0);
+  if (own_slot >= p.count) return;
+  const int i = order[own_slot];
+  if (i >= step.liquids) return;
+  const int material = bodies[body_of[i]].material;
+  const Gas gas = gases[material];
+  const double support = gas.support;
+  const double3 at = sorted_position[own_slot].xyz;
+  const double3 v = sorted_velocity[own_slot].xyz;
+  const double2 own = volume_and_pressure[own_slot];
+  double3 sum = 0;
+  FOR_EACH_GAS_NEIGHBOUR({
+    const double r = sqrt(square);
+    const double rest = support - r;
+    const double2 other = volume_and_pressure[slot];
+    const double push = (own.y + other.y) * gas.pressure_slope * (rest * rest);
+    const double3 relative = sorted_velocity[slot].xyz - v;
+    sum += other.x * (push * direction_of(&p, way, r, i, j) + gas.viscosity * rest * relative);
+  })
+  const double3 still = (double3)(step.still[0], step.still[1], step.still[2]);
+  const double3 own_force = own.x * sum - (mass[i] * step.drag) * (v - still);
+  store_vector(vector_at(force, i) + own_force, force, i);
+}
