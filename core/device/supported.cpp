@@ -1,5 +1,6 @@
 #include "core/device/supported.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -17,6 +18,10 @@ bool may_solve_viscosity(const Model& model) {
   const Real step = is_adaptive ? longest_adaptive_step(model) : numerics.step;
   return model.is_incompressible ? must_solve_own_damping(model, step)
                                  : must_solve_viscosity(model, step);
+}
+
+bool has_motion(const BodyDescription& body) {
+  return body.motion.has_value();
 }
 
 /// Collects the errors of a scene.
@@ -122,8 +127,9 @@ void Missing::check_laws() {
 }
 
 void Missing::check_solids() {
-  reject(scene_.numerics.integrator != IntegratorId::velocity_verlet, "/numerics/integrator",
-         "must be velocity_verlet");
+  reject(scene_.numerics.integrator != IntegratorId::velocity_verlet &&
+             std::ranges::any_of(scene_.bodies, has_motion),
+         "/numerics/integrator", "must be velocity_verlet for driven bodies");
   reject(scene_.numerics.control != StepControl::fixed, "/numerics/control", "must be fixed");
   check_materials();
   check_laws();

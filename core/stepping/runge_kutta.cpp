@@ -1,4 +1,4 @@
-#include <span>
+#include "core/stepping/runge_kutta.h"
 
 #include "core/solid/spring_changes.h"
 #include "core/state/rigid_motion.h"
@@ -8,11 +8,6 @@
 namespace vat {
 namespace {
 
-/// Stage s is evaluated at y_0 + dt * reach * k_{s-1}, and has the weight `weight` in the step.
-struct RungeKuttaStage {
-  Real reach;
-  Real weight;
-};
 constexpr RungeKuttaStage kExplicitEuler[] = {{0, 1}};
 constexpr RungeKuttaStage kHeun[] = {{0, 1.0 / 2}, {1, 1.0 / 2}};
 constexpr RungeKuttaStage kRungeKutta4[] = {
@@ -99,6 +94,19 @@ void take_step_of(std::span<const RungeKuttaStage> stages, const StepArguments& 
 }
 
 }  // namespace
+
+std::span<const RungeKuttaStage> runge_kutta_stages(IntegratorId id) {
+  switch (id) {
+    case IntegratorId::explicit_euler:
+      return kExplicitEuler;
+    case IntegratorId::heun:
+      return kHeun;
+    case IntegratorId::runge_kutta_4:
+      return kRungeKutta4;
+    default:
+      return {};
+  }
+}
 
 void take_explicit_euler_step(const StepArguments& step) {
   take_step_of(kExplicitEuler, step);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -80,6 +81,11 @@ class DeviceRigidBodies {
     double angular_momentum[3];
   };
 
+ public:
+  /// Bytes of a pose.
+  static constexpr std::size_t kPoseBytes = sizeof(Pose);
+
+ private:
   static Constants constants_of(const Model& model, const GuardBounds& bounds, std::size_t b);
   void drive_body(std::size_t b, const Vec3& way, const Vec3& velocity);
 

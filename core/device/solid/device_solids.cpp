@@ -23,6 +23,10 @@ struct Bound {
   double rate = 0;
 };
 
+bool keeps_forces(const Model& model) {
+  return integrator_of(model.scene.numerics.integrator).keeps_forces();
+}
+
 std::size_t groups_of_solids(const Model& model) {
   return static_cast<std::size_t>(groups_of(SolidRange(model).count));
 }
@@ -51,7 +55,9 @@ DeviceSolids::DeviceSolids(Program& program, const Model& model, const GuardBoun
       bounds_of_bodies_(program,
                         std::max<std::size_t>(1, model.rigid_bodies.size()) * sizeof(Bound)),
       greatest_(program, sizeof(Bound)),
-      damping_(program, model) {}
+      damping_(program, model) {
+  if (!keeps_forces(model)) integration_.emplace(program, model);
+}
 
 std::size_t DeviceSolids::bytes_for(const Model& model) {
   const SolidGeometry geometry(model, guard_bounds(model));
@@ -60,7 +66,8 @@ std::size_t DeviceSolids::bytes_for(const Model& model) {
          n * (2 * DeviceMotion::kBytes + 3 * kVector + kVector4 + sizeof(std::int32_t)) +
          model.cells.size() * sizeof(double) +
          (groups_of_solids(model) + model.rigid_bodies.size() + 1) * sizeof(Bound) +
-         DeviceRigidBodies::bytes_for(model) + DeviceDamping::bytes_for(model);
+         DeviceRigidBodies::bytes_for(model) + DeviceDamping::bytes_for(model) +
+         (keeps_forces(model) ? 0 : DeviceIntegration::bytes_for(model));
 }
 
 void DeviceSolids::write(const State& state) {
@@ -148,7 +155,7 @@ void DeviceSolids::gather() {
 }
 
 void DeviceSolids::find_bound() {
-  if (!model_.damping.any) return;
+  if (!model_.damping.any || !keeps_forces(model_)) return;
   bound_ = least_bound_;
   if (!has_loads_) return;
   Bound bound{least_bound_.omega2, least_bound_.rate};

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include "core/device/common/device_cells.h"
@@ -8,11 +10,15 @@
 #include "core/device/common/device_motion.h"
 #include "core/device/opencl/program.h"
 #include "core/device/solid/device_damping.h"
+#include "core/device/solid/device_integration.h"
 #include "core/device/solid/device_rigid_bodies.h"
 #include "core/device/solid/solid_geometry.h"
 #include "core/device/solid/solid_tables.h"
 #include "core/model/model.h"
 #include "core/state/state.h"
+#include "core/stepping/integrator.h"
+#include "core/stepping/runge_kutta.h"
+#include "core/support/check.h"
 
 namespace vat {
 
@@ -50,6 +56,30 @@ class DeviceSolids {
   /// Ends the last step of a call at its time.
   void finish(const StepMoment& moment, Real step, const opencl::Buffer& counters);
 
+  /// Takes a step of an integrator without a closing kick, from `start` to `end` [s]. Calls
+  /// evaluate(time), which must end with gather(), for the forces of each stage.
+  template <class F>
+  void integrate(Real start, Real end, Real dt, const opencl::Buffer& counters, F&& evaluate) {
+    VAT_CHECK(integration_.has_value());
+    const SolidParameters at_end = parameters(end);
+    const SteppedSolids solids{motion_, force_, tables_, rigid_};
+    const std::span<const RungeKuttaStage> stages =
+        runge_kutta_stages(model_.scene.numerics.integrator);
+    if (stages.empty()) {
+      evaluate(start);
+      integration_->take_euler_step(at_end, dt, solids, counters);
+    } else {
+      integration_->begin(solids);
+      for (std::size_t s = 0; s < stages.size(); ++s) {
+        evaluate(start + stages[s].reach * dt);
+        const Real next = s + 1 < stages.size() ? stages[s + 1].reach : 0;
+        integration_->advance(stages[s].weight, next * dt, solids);
+      }
+      integration_->end(at_end, dt, solids, counters);
+    }
+    rigid_.pose(at_end, motion_.position, predicted_, counters);
+  }
+
   /// Returns the parameters of the kernels of forces at the time `end` [s].
   SolidParameters parameters(Real end) const { return geometry_.at(model_, {end, 0, 0, 0, 0}); }
   /// Returns the particles after move().
@@ -84,6 +114,7 @@ class DeviceSolids {
   opencl::Buffer pressure_;                               ///< by cell of deformable bodies
   opencl::Buffer partial_, bounds_of_bodies_, greatest_;  ///< bounds of groups, rigid bodies, all
   DeviceDamping damping_;
+  std::optional<DeviceIntegration> integration_;  ///< of integrators without a closing kick
   ReadMotion read_;
   std::vector<Vec3> read_forces_;
   Oscillation bound_, saved_bound_;  ///< of the last forces

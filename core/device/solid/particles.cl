@@ -94,6 +94,17 @@ bool stop_at_walls(const Solids* p, double* x, double* v) {
   return is_stopped;
 }
 
+// Stops a particle at walls at the end of a step, and checks its state.
+void check_solid(const Solids* p, double mobility, double greatest_speed2, double* x, double* v,
+                 global int* status) {
+  bool sound = is_within(p->domain_low, p->domain_high, greatest_speed2, x, v);
+  if (mobility > 0 && stop_at_walls(p, x, v)) {
+    atomic_inc(status + kStops);
+    sound = sound && is_within(p->domain_low, p->domain_high, greatest_speed2, x, v);
+  }
+  if (!sound) atomic_or(status + kFault, 1);
+}
+
 // Ends a step: loads the particle, kicks it, stops it at walls, and checks its state.
 void end_solid_step(const Solids* p, int i, global const double* position,
                     global const double* velocity, global const double* force, double mobility,
@@ -102,13 +113,7 @@ void end_solid_step(const Solids* p, int i, global const double* position,
     x[k] = position[3 * i + k];
     v[k] = velocity[3 * i + k] + (p->closing * mobility) * force[3 * i + k];
   }
-  if (!(p->closing > 0)) return;
-  bool sound = is_within(p->domain_low, p->domain_high, greatest_speed2, x, v);
-  if (mobility > 0 && stop_at_walls(p, x, v)) {
-    atomic_inc(status + kStops);
-    sound = sound && is_within(p->domain_low, p->domain_high, greatest_speed2, x, v);
-  }
-  if (!sound) atomic_or(status + kFault, 1);
+  if (p->closing > 0) check_solid(p, mobility, greatest_speed2, x, v, status);
 }
 
 // Ends a step, and begins the next one with a kick and a drift. Counts the particles of each cell.

@@ -129,11 +129,9 @@ void kick_rigid(Pose* pose, global const double* force, int b, double dt) {
   }
 }
 
-// Ends a step of `dt`: kicks the body and checks its state, see find_rigid_fault().
-void end_rigid_step(const Solids* p, const Rigid* body, global const double* force, int b,
-                    double dt, Pose* pose, global int* status) {
-  if (!(p->closing > 0)) return;
-  kick_rigid(pose, force, b, p->closing);
+// Checks the state of a body at the end of a step of `dt`, see find_rigid_fault().
+void check_rigid(const Solids* p, const Rigid* body, double dt, const Pose* pose,
+                 global int* status) {
   const double3 velocity = body->inverse_mass * three(pose->momentum);
   const double3 omega =
       spin_of(body, orientation_of(pose), three(pose->angular_momentum));
@@ -145,6 +143,25 @@ void end_rigid_step(const Solids* p, const Rigid* body, global const double* for
   if (!is_slow || !is_within(p->domain_low, p->domain_high, 0, pose->center, at_rest)) {
     atomic_or(status + kFault, 1);
   }
+}
+
+// Ends a step of `dt`: kicks the body and checks its state.
+void end_rigid_step(const Solids* p, const Rigid* body, global const double* force, int b,
+                    double dt, Pose* pose, global int* status) {
+  if (!(p->closing > 0)) return;
+  kick_rigid(pose, force, b, p->closing);
+  check_rigid(p, body, dt, pose, status);
+}
+
+// Moves a body by its velocity and its free rotation.
+void drift_rigid(const Rigid* body, double dt, Pose* pose) {
+  for (int k = 0; k < 3; ++k) pose->center[k] += (dt * body->inverse_mass) * pose->momentum[k];
+  const double4 q =
+      rotate_freely(body, orientation_of(pose), three(pose->angular_momentum), dt);
+  pose->orientation[0] = q.x;
+  pose->orientation[1] = q.y;
+  pose->orientation[2] = q.z;
+  pose->orientation[3] = q.w;
 }
 
 // Ends a step, and begins the next one with a kick and a drift. The velocities that forces depend on
@@ -160,17 +177,7 @@ kernel void move_rigid_bodies(const Solids p, const int count, const double dt,
   end_rigid_step(&p, &body, force, b, dt, &pose, status);
   kick_rigid(&pose, force, b, p.opening);
   // A driven body is held, and drive_rigid_body moves it.
-  if (p.drift > 0 && !body.is_held) {
-    for (int k = 0; k < 3; ++k) {
-      pose.center[k] += (p.drift * body.inverse_mass) * pose.momentum[k];
-    }
-    const double4 q = rotate_freely(&body, orientation_of(&pose), three(pose.angular_momentum),
-                                    p.drift);
-    pose.orientation[0] = q.x;
-    pose.orientation[1] = q.y;
-    pose.orientation[2] = q.z;
-    pose.orientation[3] = q.w;
-  }
+  if (p.drift > 0 && !body.is_held) drift_rigid(&body, p.drift, &pose);
   poses[b] = pose;
   kick_rigid(&pose, force, b, p.prediction);
   store_vector(body.inverse_mass * three(pose.momentum), speeds, body.body);

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "core/stepping/integrator.h"
+
 namespace vat {
 
 using opencl::Program;
@@ -14,8 +16,23 @@ void SolidMethod::read(State& state) {
   solids_.read();
   state.forces.particle.resize(model().particle_count);
   solids_.copy_to(state);
+  if (!keeps_forces()) return;
   state.forces_current = true;
   if (model().damping.any) state.bound = solids_.bound();
+}
+
+bool SolidMethod::keeps_forces() const {
+  return integrator_of(model().scene.numerics.integrator).keeps_forces();
+}
+
+bool SolidMethod::take_nominal_steps(const NominalSteps& steps, AdvanceReport& report) {
+  if (keeps_forces()) return VerletMethod::take_nominal_steps(steps, report);
+  for (std::uint32_t s = 0; s < steps.count; ++s) {
+    solids_.integrate(steps.time(s), steps.time(s + 1), steps.step, counters_.buffer,
+                      [&](Real time) { evaluate_at_start(time, report); });
+  }
+  report.count_steps(steps.count, steps.step, steps.step);
+  return true;
 }
 
 void SolidMethod::move(const StepMoment& start, Real end) {

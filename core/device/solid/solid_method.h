@@ -11,8 +11,8 @@
 
 namespace vat {
 
-/// The steps of the bodies of DeviceSolids by velocity Verlet. The functions throw
-/// opencl::DeviceFailure.
+/// The fixed steps of the bodies of DeviceSolids, by the integrator of the scene. The functions
+/// throw opencl::DeviceFailure.
 class SolidMethod : public VerletMethod {
  public:
   SolidMethod(opencl::Program& program, std::shared_ptr<const Model> bodies,
@@ -35,6 +35,8 @@ class SolidMethod : public VerletMethod {
   bool must_solve(Real dt) const override { return solids_.must_solve(dt); }
   std::uint32_t solve_damping(Real end, Real dt) override { return solids_.solve_damping(end, dt); }
   void finish(const StepMoment& moment) override;
+  bool take_nominal_steps(const NominalSteps& steps, AdvanceReport& report) override;
+  bool keeps_forces() const;
 
   DeviceCounters counters_;
   DeviceSolids solids_;

@@ -292,8 +292,6 @@ TEST(DeformableDevice, SolvesForStrongDamping) {
 
 TEST(DeformableDevice, RefusesFeaturesThatItLacks) {
   const SceneCase cases[] = {
-      {"/numerics/integrator",
-       [](Scene& s) { s.numerics.integrator = IntegratorId::symplectic_euler; }},
       {"/numerics/control", [](Scene& s) { s.numerics.control = StepControl::adaptive; }},
       {"/materials/0/implicit_springs", [](Scene& s) { s.materials[0].implicit_springs = true; }},
       {"/materials/0/plasticity", [](Scene& s) { s.materials[0].plasticity = Plasticity{}; }},

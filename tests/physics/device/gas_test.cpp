@@ -94,6 +94,12 @@ TEST(GasDevice, HasTheMotionOfTheCpu) {
   expect_motion(make_pool(), kScenes);
 }
 
+TEST(GasDevice, HasTheMotionOfTheCpuWithOtherIntegrators) {
+  Scene scene = make_pool();
+  add_oil(scene);
+  expect_motion_with_other_integrators(scene, 60);
+}
+
 TEST(GasDevice, SolvesForStrongDampingOfContacts) {
   constexpr std::uint32_t kSteps = 60;
   Scene scene = make_pool();
@@ -150,7 +156,6 @@ TEST(GasDevice, RefusesFeaturesThatItLacks) {
   const SceneCase cases[] = {
       {"/vat/walls", [](Scene& s) { s.vat->walls[4].no_slip = true; }},
       {"/numerics/step", [](Scene& s) { s.materials[0].liquid->viscosity = 2000; }},
-      {"/numerics/integrator", [](Scene& s) { s.numerics.integrator = IntegratorId::heun; }},
       {"/numerics/control", [](Scene& s) { s.numerics.control = StepControl::adaptive; }},
       {"/central_field", [](Scene& s) { s.central_field = CentralField{}; }},
   };

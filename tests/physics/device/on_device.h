@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 #include <stdexcept>
+#include <vector>
 
 #include "core/device/device_use.h"
 #include "core/simulation/simulation.h"
@@ -69,6 +70,26 @@ inline void expect_motion_of_cpu(const Scene& scene, std::uint32_t steps) {
   EXPECT_EQ(report.iterations.damping, expected.iterations.damping);
   EXPECT_EQ(expected.undone_steps, 0U);
   EXPECT_LT(difference(device, cpu), rounding_after(steps));
+}
+
+/// The integrators without a closing kick.
+inline constexpr IntegratorId kOtherIntegrators[] = {
+    IntegratorId::explicit_euler, IntegratorId::symplectic_euler, IntegratorId::heun,
+    IntegratorId::runge_kutta_4};
+
+/// Expects the motion of the CPU with each of these integrators, which differ.
+inline void expect_motion_with_other_integrators(Scene scene, std::uint32_t steps) {
+  std::vector<Simulation> ends;
+  for (const IntegratorId integrator : kOtherIntegrators) {
+    SCOPED_TRACE(static_cast<int>(integrator));
+    scene.numerics.integrator = integrator;
+    expect_motion_of_cpu(scene, steps);
+    ends.push_back(make_simulation(scene));
+    ends.back().advance(steps);
+    for (std::size_t n = 0; n + 1 < ends.size(); ++n) {
+      EXPECT_GT(difference(ends[n], ends.back()), 10 * rounding_after(steps));
+    }
+  }
 }
 
 /// Returns a fixed rigid body of the material "stone".

@@ -234,6 +234,21 @@ TEST(RigidDevice, LeavesABodyBeyondAWallToTheCpu) {
   EXPECT_EQ(device.state_hash(), cpu.state_hash());
 }
 
+TEST(RigidDevice, HasTheMotionOfTheCpuWithOtherIntegrators) {
+  Scene scene = make_heap();
+  add_jelly(scene);
+  scene.default_interface.friction = 0.4;
+  expect_motion_with_other_integrators(scene, 60);
+}
+
+TEST(RigidDevice, HasTheSameBitsInAnyPortionsOfStepsWithOtherIntegrators) {
+  Scene scene = make_heap();
+  for (const IntegratorId integrator : kOtherIntegrators) {
+    scene.numerics.integrator = integrator;
+    expect_same_bits_in_any_portions(scene, 2);
+  }
+}
+
 // The CPU takes the call in which a body is released, or that ends then.
 TEST(RigidDevice, HoldsABodyUntilItsRelease) {
   constexpr std::uint32_t kRelease = 30;
@@ -276,6 +291,13 @@ TEST(RigidDevice, RefusesFeaturesThatItLacks) {
        }},
       {"/bodies/0/velocity", [](Scene& s) { s.bodies[0].fixed = true; }},
       {"/bodies/0/velocity", [](Scene& s) { s.bodies[0].release = 1; }},
+      {"/numerics/integrator",
+       [](Scene& s) {
+         s.numerics.integrator = IntegratorId::heun;
+         s.bodies[0].velocity.setZero();
+         s.bodies[0].angular_velocity.setZero();
+         s.bodies[0].motion = SlideMotion{{1, 0, 0}, 0.1, 1};
+       }},
       {"/numerics/control", [](Scene& s) { s.numerics.control = StepControl::adaptive; }},
   };
   expect_refusals(make_heap(), cases);
