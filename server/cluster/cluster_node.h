@@ -21,6 +21,8 @@
 #include "server/cluster/cluster_tokens.h"
 #include "server/cluster/lease.h"
 #include "server/cluster/node_table.h"
+#include "server/cluster/saved/cluster_scenes.h"
+#include "server/cluster/saved/cluster_states.h"
 #include "server/cluster/session_locator.h"
 #include "server/cluster/session_stream.h"
 #include "server/history/session_replica.h"
@@ -92,6 +94,9 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   std::optional<std::string> url_of(const LocatedSession& session) const;
   /// Returns the tokens that all nodes share, or null if the settings have no key.
   SharedTokens* tokens() const { return tokens_.get(); }
+  /// Return the saved states and scenes that all nodes share.
+  SavedStates& saved_states() { return saved_states_; }
+  SavedScenes& saved_scenes() { return saved_scenes_; }
   /// Returns the URLs of the present nodes.
   std::vector<std::string> urls() const;
   /// Returns the name of the node that should run a new session.
@@ -150,6 +155,9 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   bool is_my_turn(const LocatedSession& entry, SteadyClock::duration orphaned) const;
 
   // On the threads that may wait.
+  /// Returns whether the directory has the session.
+  bool has_session(const std::string& id);
+  void remove_saved(std::uint64_t session);
   void refresh();
   void check_sessions(Time sent);
   void take(std::uint64_t session);
@@ -192,6 +200,9 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   Bucket node_bucket_;
   NodeTable nodes_;
   SessionLocator locator_;
+  SavedStore saved_;
+  ClusterStates saved_states_;
+  ClusterScenes saved_scenes_;
   const std::unique_ptr<ClusterTokens> tokens_;  // null: there is no key
   ClusterHost* host_ = nullptr;
   std::atomic<bool> leaving_ = false;

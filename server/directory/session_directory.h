@@ -94,9 +94,6 @@ class SessionDirectory : private ClusterHost {
   /// Sends a request about the session that its parameters name to the owner of the session, or
   /// answers with the error `moved`. Returns false if another node does not have the session.
   bool ask_owner(PendingReply& reply, const RpcRequest& request);
-  /// Creates a session from a saved scene at the node of the client's session, whose scenes the
-  /// client uses. Returns false if this node creates the session.
-  bool create_at_owner(PendingReply& reply, const RpcRequest& request);
   /// Returns the function that notes a result of replay.open on another node, see NoteResult of
   /// RelayedClient.
   std::function<void(Json& result)> note_replay_of(ConnectionId creator);
