@@ -58,10 +58,16 @@ std::uint64_t ClusterNode::add_session(const std::string& name, const std::strin
   reserve(entry.number);
   try {
     entry = locator_.create(entry);
-    place.last_message = streams_.logs.append(
-        log_subject(entry.number),
-        write_records({EntriesRecord{{first}}, SettingsRecord{name, settings}}), 0,
-        {{kEpochHeader, "1"}, {kWriteHeader, "1.0"}});
+    const std::string message =
+        write_records({EntriesRecord{{first}}, SettingsRecord{name, settings}});
+    std::size_t part = 0;
+    for (const LogPart& one : split_message(message)) {
+      place.last_message =
+          streams_.logs.append(log_subject(entry.number), one.bytes, place.last_message,
+                               {{kEpochHeader, "1"},
+                                {kWriteHeader, "1.0." + std::to_string(part++)},
+                                {kPartHeader, one.header}});
+    }
   } catch (const NatsError&) {
     if (entry.revision > 0) locator_.remove(entry);
     unreserve(entry.number);
