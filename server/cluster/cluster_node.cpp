@@ -162,6 +162,9 @@ void ClusterNode::listen() {
     if (auto node = read_node(entry.key, entry.value))
       nodes_.note(*std::move(node), entry.revision);
   }));
+  subscriptions_.push_back(connection_.subscribe(
+      question_subject(name()),
+      [this](const NatsMessage& question) { post([this, question] { answer(question); }); }));
   subscriptions_.push_back(
       connection_.subscribe("vat.node." + name() + ".create", [this](const NatsMessage& request) {
         post([this, request] {

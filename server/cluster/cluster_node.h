@@ -88,6 +88,14 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   std::optional<LocatedSession> find(std::uint64_t session) const;
   /// Returns a number that no other session of the cluster has. Waits. Throws NatsError.
   std::uint64_t new_number() { return locator_.next_number(); }
+  /// Asks the other present nodes for their replays, and then calls `done` on a thread that may
+  /// wait: after the last answer, or after ClusterSettings::answer_time if a node does not answer.
+  /// Calls at the same time share the questions.
+  void refresh_replays(std::function<void()> done);
+  using Descriptions = std::map<std::uint64_t, std::string>;
+  /// Asks the other present nodes for the results of ClusterHost::describe_sessions(), and then
+  /// calls `done` with all answers, as above.
+  void describe_sessions(std::function<void(const Descriptions&)> done);
   /// Returns the time within which each present node renews its entry.
   std::chrono::milliseconds entry_age() const { return renewal_.load() * 3 / 2; }
   /// Returns the URL of the session's owner, or nothing if it is unknown or silent.
@@ -141,6 +149,16 @@ class ClusterNode final : public SessionReplicas, public SendGate {
 
   /// Returns the time within which a running node renews its lease.
   std::chrono::milliseconds fresh() const { return renewal_.load() + Lease::kGreatestRenewal; }
+
+  // Questions to other nodes.
+  struct Questions;
+  void ask(const std::shared_ptr<Questions>& questions, const std::string& node,
+           const std::string& question);
+  /// Asks all other present nodes.
+  void ask_all(std::shared_ptr<Questions> questions, const std::string& question);
+  void ask_for_replays();
+  void answer(const NatsMessage& question);
+  std::string answer_to(const std::string& question) const;
 
   // On the timer's thread.
   void wait_for_tick();
@@ -224,6 +242,8 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   std::map<std::uint64_t, Move> moves_;
   std::map<std::uint64_t, Time> failed_;  // times at which a take-over failed
   std::map<std::uint64_t, Time> orphans_;
+  bool asks_for_replays_ = false;
+  std::vector<std::function<void()>> wait_for_replays_;  // for the next answers
 
   // Used by the timer's thread only.
   Time last_renewal_{};

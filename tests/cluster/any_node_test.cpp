@@ -229,6 +229,38 @@ TEST_F(AnyNode, SavedDataOutlivesItsNodeAndGoesWithTheSession) {
   EXPECT_THAT(admin.result("scene.list").dump(), testing::HasSubstr(R"("name":"bay")"));
 }
 
+TEST_F(AnyNode, AnAdminSeesAllParticipantsAtEachNode) {
+  for (const std::string route : {"relay", "redirect"}) {
+    start(2, route);
+    auto joined = nodes->join(kSession, relay, {{"name", "Ada"}});
+    const std::string replay =
+        joined.client.result("replay.open", {{"session", kSession}}).at("session");
+    std::optional<WaitingClient> viewer(nodes->connect(joined.node));
+    viewer->result("session.join", {{"session", replay}, {"name", "Bo"}});
+    for (const std::string& node : {owner, relay}) {
+      WaitingClient admin = connect(node, kAdmin);
+      std::map<std::string, Json> sessions;
+      const Json list = admin.result("server.sessions");
+      for (const Json& session : list.at("sessions")) sessions[session.at("session")] = session;
+      ASSERT_TRUE(sessions.contains(kSession) && sessions.contains(replay)) << list;
+      for (const auto& [id, name] : {std::pair<std::string, std::string>(kSession, "Ada"),
+                                     std::pair<std::string, std::string>(replay, "Bo")}) {
+        const Json& session = sessions.at(id);
+        EXPECT_EQ(session.at("node"), owner) << route << id;
+        EXPECT_EQ(session.at("state"), node == owner ? "running" : "elsewhere") << route << id;
+        EXPECT_EQ(session.at("scene"), "pool") << route << id;
+        EXPECT_GT(session.at("particles"), 0) << route << id;
+        EXPECT_EQ(session.at("hibernating"), false) << route << id;
+        ASSERT_EQ(session.at("participants").size(), 1U) << route << id;
+        const Json& person = session.at("participants").at(0);
+        EXPECT_EQ(person.at("name"), name) << route;
+        EXPECT_EQ(person.at("away"), false) << route;
+        EXPECT_EQ(person.at("address"), "127.0.0.1") << route;
+      }
+    }
+  }
+}
+
 TEST_F(AnyNode, ServesADownloadOfAnotherNode) {
   for (const std::string route : {"relay", "redirect"}) {
     start(3, route);
