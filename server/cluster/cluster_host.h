@@ -29,6 +29,8 @@ class ClusterHost {
                           std::function<void(const std::string&)> answer) = 0;
   /// Returns the numbers and names of the replays, which stay on their node.
   virtual std::map<std::uint64_t, std::string> replays() const { return {}; }
+  /// Returns JSON texts that describe the running sessions and replays for the admins of all nodes.
+  virtual std::map<std::uint64_t, std::string> describe_sessions() const { return {}; }
   /// Called often, and after each change of the cluster's sessions.
   virtual void cluster_changed() = 0;
 };

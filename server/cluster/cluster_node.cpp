@@ -55,6 +55,9 @@ ClusterNode::ClusterNode(ClusterSettings settings, Storage& storage, Clock& cloc
       node_bucket_(connection_, "vat-nodes", settings_.entry_life.value_or(Lease::kOthersTime)),
       nodes_(clock),
       locator_(connection_),
+      saved_(connection_, *this, clock_),
+      saved_states_(saved_, [this](const std::string& session) { return has_session(session); }),
+      saved_scenes_(saved_),
       tokens_(settings_.key.empty() ? nullptr
                                     : std::make_unique<ClusterTokens>(
                                           connection_, threads_.get_executor(), clock_, instance_)),
@@ -159,6 +162,9 @@ void ClusterNode::listen() {
     if (auto node = read_node(entry.key, entry.value))
       nodes_.note(*std::move(node), entry.revision);
   }));
+  subscriptions_.push_back(connection_.subscribe(
+      question_subject(name()),
+      [this](const NatsMessage& question) { post([this, question] { answer(question); }); }));
   subscriptions_.push_back(
       connection_.subscribe("vat.node." + name() + ".create", [this](const NatsMessage& request) {
         post([this, request] {

@@ -21,6 +21,8 @@
 #include "server/cluster/cluster_tokens.h"
 #include "server/cluster/lease.h"
 #include "server/cluster/node_table.h"
+#include "server/cluster/saved/cluster_scenes.h"
+#include "server/cluster/saved/cluster_states.h"
 #include "server/cluster/session_locator.h"
 #include "server/cluster/session_stream.h"
 #include "server/history/session_replica.h"
@@ -86,12 +88,23 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   std::optional<LocatedSession> find(std::uint64_t session) const;
   /// Returns a number that no other session of the cluster has. Waits. Throws NatsError.
   std::uint64_t new_number() { return locator_.next_number(); }
+  /// Asks the other present nodes for their replays, and then calls `done` on a thread that may
+  /// wait: after the last answer, or after ClusterSettings::answer_time if a node does not answer.
+  /// Calls at the same time share the questions.
+  void refresh_replays(std::function<void()> done);
+  using Descriptions = std::map<std::uint64_t, std::string>;
+  /// Asks the other present nodes for the results of ClusterHost::describe_sessions(), and then
+  /// calls `done` with all answers, as above.
+  void describe_sessions(std::function<void(const Descriptions&)> done);
   /// Returns the time within which each present node renews its entry.
   std::chrono::milliseconds entry_age() const { return renewal_.load() * 3 / 2; }
   /// Returns the URL of the session's owner, or nothing if it is unknown or silent.
   std::optional<std::string> url_of(const LocatedSession& session) const;
   /// Returns the tokens that all nodes share, or null if the settings have no key.
   SharedTokens* tokens() const { return tokens_.get(); }
+  /// Return the saved states and scenes that all nodes share.
+  SavedStates& saved_states() { return saved_states_; }
+  SavedScenes& saved_scenes() { return saved_scenes_; }
   /// Returns the URLs of the present nodes.
   std::vector<std::string> urls() const;
   /// Returns the name of the node that should run a new session.
@@ -137,6 +150,16 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   /// Returns the time within which a running node renews its lease.
   std::chrono::milliseconds fresh() const { return renewal_.load() + Lease::kGreatestRenewal; }
 
+  // Questions to other nodes.
+  struct Questions;
+  void ask(const std::shared_ptr<Questions>& questions, const std::string& node,
+           const std::string& question);
+  /// Asks all other present nodes.
+  void ask_all(std::shared_ptr<Questions> questions, const std::string& question);
+  void ask_for_replays();
+  void answer(const NatsMessage& question);
+  std::string answer_to(const std::string& question) const;
+
   // On the timer's thread.
   void wait_for_tick();
   void tick();
@@ -150,6 +173,9 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   bool is_my_turn(const LocatedSession& entry, SteadyClock::duration orphaned) const;
 
   // On the threads that may wait.
+  /// Returns whether the directory has the session.
+  bool has_session(const std::string& id);
+  void remove_saved(std::uint64_t session);
   void refresh();
   void check_sessions(Time sent);
   void take(std::uint64_t session);
@@ -192,6 +218,9 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   Bucket node_bucket_;
   NodeTable nodes_;
   SessionLocator locator_;
+  SavedStore saved_;
+  ClusterStates saved_states_;
+  ClusterScenes saved_scenes_;
   const std::unique_ptr<ClusterTokens> tokens_;  // null: there is no key
   ClusterHost* host_ = nullptr;
   std::atomic<bool> leaving_ = false;
@@ -213,6 +242,8 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   std::map<std::uint64_t, Move> moves_;
   std::map<std::uint64_t, Time> failed_;  // times at which a take-over failed
   std::map<std::uint64_t, Time> orphans_;
+  bool asks_for_replays_ = false;
+  std::vector<std::function<void()>> wait_for_replays_;  // for the next answers
 
   // Used by the timer's thread only.
   Time last_renewal_{};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <boost/asio/post.hpp>
+#include <charconv>
 #include <condition_variable>
 #include <utility>
 
@@ -17,6 +18,15 @@ constexpr int kUpdateAttempts = 10;
 
 std::string id_of_session(std::uint64_t session) {
   return "s" + std::to_string(session);
+}
+
+std::optional<std::uint64_t> session_of_id(std::string_view id) {
+  std::uint64_t number = 0;
+  const char* const end = id.data() + id.size();
+  if (!id.starts_with('s')) return {};
+  const auto [stop, error] = std::from_chars(id.data() + 1, end, number);
+  if (error != std::errc() || stop != end) return {};
+  return number;
 }
 
 }  // namespace
@@ -48,10 +58,16 @@ std::uint64_t ClusterNode::add_session(const std::string& name, const std::strin
   reserve(entry.number);
   try {
     entry = locator_.create(entry);
-    place.last_message = streams_.logs.append(
-        log_subject(entry.number),
-        write_records({EntriesRecord{{first}}, SettingsRecord{name, settings}}), 0,
-        {{kEpochHeader, "1"}, {kWriteHeader, "1.0"}});
+    const std::string message =
+        write_records({EntriesRecord{{first}}, SettingsRecord{name, settings}});
+    std::size_t part = 0;
+    for (const LogPart& one : split_message(message)) {
+      place.last_message =
+          streams_.logs.append(log_subject(entry.number), one.bytes, place.last_message,
+                               {{kEpochHeader, "1"},
+                                {kWriteHeader, "1.0." + std::to_string(part++)},
+                                {kPartHeader, one.header}});
+    }
   } catch (const NatsError&) {
     if (entry.revision > 0) locator_.remove(entry);
     unreserve(entry.number);
@@ -75,12 +91,27 @@ void ClusterNode::remove_session(std::uint64_t session,
       });
       forget(session);
       remove_messages(streams_, session);
+      remove_saved(session);
     } catch (const NatsError& error) {
       log_warning("session {} is not removed: {}", id_of_session(session), error.what());
       if (find_hosted(session)) return done(StorageError::Kind::unreachable);
     }
     done({});
   });
+}
+
+bool ClusterNode::has_session(const std::string& id) {
+  const auto number = session_of_id(id);
+  return number && (locator_.find(*number) || locator_.read(*number));
+}
+
+void ClusterNode::remove_saved(std::uint64_t session) {
+  try {
+    saved_states_.remove_session(id_of_session(session));
+  } catch (const StorageError& error) {  // a write that needs their space removes them
+    log_warning("the saved states of session {} are not removed: {}", id_of_session(session),
+                error.what());
+  }
 }
 
 bool ClusterNode::forget(std::uint64_t session) {

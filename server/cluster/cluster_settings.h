@@ -21,6 +21,8 @@ struct ClusterSettings {
   std::string key;       ///< key for signed tokens; empty: tokens are not signed
   /// Time for which NATS keeps the node's entry. The default is that of the lease.
   std::optional<std::chrono::milliseconds> entry_life;
+  /// Greatest time until other nodes answer. The default is that of their next renewal.
+  std::optional<std::chrono::milliseconds> answer_time;
 
   bool is_used() const { return !servers.empty(); }
   bool is_relay() const { return route == "relay"; }

@@ -10,6 +10,7 @@ namespace vat {
 /// Headers of the messages in the streams of a cluster.
 inline constexpr const char* kEpochHeader = "Vat-Epoch";
 inline constexpr const char* kWriteHeader = "Vat-Write";  ///< unique for each write
+inline constexpr const char* kPartHeader = "Vat-Part";    ///< see LogPart; absent: a whole message
 
 /// Streams with the logs and states of a cluster's sessions. The connection must outlive them.
 struct ClusterStreams {

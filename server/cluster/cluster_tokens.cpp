@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "protocol/json/json_reader.h"
+#include "server/support/hex.h"
 #include "server/support/log.h"
 
 namespace vat {
@@ -23,14 +24,9 @@ std::uint64_t minute_of(double time) {
 
 /// Key "SESSION.MINUTE.HASH". By its parts, the tokens of a session or of a minute are removed.
 std::string token_key(const TokenHash& token, const TokenClaims& claims) {
-  constexpr std::string_view kDigits = "0123456789abcdef";
-  std::string key = claims.session.empty() ? "all" : claims.session;
-  key += '.' + std::to_string(claims.ends / 60) + '.';
-  for (const std::uint8_t byte : token) {
-    key += kDigits[byte >> 4];
-    key += kDigits[byte & 15];
-  }
-  return key;
+  const std::string session = claims.session.empty() ? "all" : claims.session;
+  const std::string hash(token.begin(), token.end());
+  return session + '.' + std::to_string(claims.ends / 60) + '.' + to_hex(hash);
 }
 
 /// Calls `work`. Returns its result or the kind of its failure.

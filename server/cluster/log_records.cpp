@@ -1,5 +1,7 @@
 #include "server/cluster/log_records.h"
 
+#include <algorithm>
+#include <charconv>
 #include <span>
 #include <utility>
 
@@ -101,6 +103,39 @@ std::vector<LogRecord> read_records(const std::string& bytes) {
     for (const Json& record : list) records.push_back(read_log_record(record));
     return records;
   });
+}
+
+std::deque<LogPart> split_message(const std::string& bytes) {
+  const std::size_t count =
+      std::max<std::size_t>(1, (bytes.size() + LogPart::kBytes - 1) / LogPart::kBytes);
+  std::deque<LogPart> parts;
+  for (std::size_t i = 0; i < count; ++i) {
+    parts.push_back({std::to_string(i) + "/" + std::to_string(count),
+                     bytes.substr(i * LogPart::kBytes, LogPart::kBytes)});
+  }
+  return parts;
+}
+
+std::optional<std::string> LogParts::take(const std::string& header, const std::string& bytes) {
+  if (header.empty()) {
+    next_ = 0;
+    return bytes;
+  }
+  std::size_t index = 0;
+  std::size_t count = 0;
+  const char* const end = header.data() + header.size();
+  const auto number = std::from_chars(header.data(), end, index);
+  const bool has_count = number.ec == std::errc() && number.ptr != end && *number.ptr == '/';
+  if (!has_count || std::from_chars(number.ptr + 1, end, count).ec != std::errc()) {
+    fail_record("its part has the header " + header);
+  }
+  if (index == 0) joined_.clear();
+  if (index != 0 && index != next_) fail_record("a part is missing");
+  joined_ += bytes;
+  next_ = index + 1;
+  if (next_ < count) return {};
+  next_ = 0;
+  return std::move(joined_);
 }
 
 std::string pack_state(const PackedState& packed) {

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <deque>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -40,6 +43,28 @@ using LogRecord = std::variant<EntriesRecord, RefusedRecord, ReachedRecord, Sett
 /// throws StorageError (kind `corrupt`) if the message is invalid.
 std::string write_records(const std::vector<LogRecord>& records);
 std::vector<LogRecord> read_records(const std::string& bytes);
+
+/// Part of a long message of a log. A message of NATS has at most 1 MB.
+struct LogPart {
+  static constexpr std::size_t kBytes = 384 * 1024;
+
+  std::string header;  ///< number of the part from 0, "/", and the number of parts
+  std::string bytes;
+};
+/// Returns the parts of a message. A short message has one part.
+std::deque<LogPart> split_message(const std::string& bytes);
+
+/// Joins the parts of a log's messages, in the order of the log.
+class LogParts {
+ public:
+  /// Returns the whole message after its last part. Ignores the parts of a message that was not
+  /// completed. Throws StorageError (kind `corrupt`) if the header is invalid.
+  std::optional<std::string> take(const std::string& header, const std::string& bytes);
+
+ private:
+  std::string joined_;
+  std::size_t next_ = 0;  // number of the next part
+};
 
 /// A checkpoint with all that a recovery needs beside the later log.
 struct PackedState {

@@ -74,6 +74,13 @@ std::uint64_t NodeTable::revision_of(const std::string& name) const {
   return found == nodes_.end() ? 0 : found->second.revision;
 }
 
+void NodeTable::note_replays(const std::string& name,
+                             std::map<std::uint64_t, std::string> replays) {
+  const std::lock_guard lock(mutex_);
+  const auto found = nodes_.find(name);
+  if (found != nodes_.end()) found->second.node.replays = std::move(replays);
+}
+
 void NodeTable::forget(const std::string& name) {
   const std::lock_guard lock(mutex_);
   nodes_.erase(name);

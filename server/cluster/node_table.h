@@ -26,6 +26,10 @@ struct NodeInfo {
 };
 
 std::string write_node(const NodeInfo& node);
+/// Returns the subject of questions to a node.
+inline std::string question_subject(const std::string& node) {
+  return "vat.node." + node + ".ask";
+}
 /// Returns whether the machine of the node has this instruction set.
 bool has_instructions(const NodeInfo& node, const std::string& instruction_set);
 /// Returns nothing if the text is invalid, or describes another node than `name`.
@@ -38,6 +42,8 @@ class NodeTable {
 
   /// Notes a renewal with this revision of the node's entry.
   void note(NodeInfo node, std::uint64_t revision);
+  /// Notes the replays of a known node before its next renewal.
+  void note_replays(const std::string& name, std::map<std::uint64_t, std::string> replays);
   /// Forgets a node that has left.
   void forget(const std::string& name);
   std::optional<NodeInfo> find(const std::string& name) const;

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "protocol/json/json_reader.h"
+#include "server/support/hex.h"
 #include "server/support/log.h"
 
 namespace vat {
@@ -32,14 +33,7 @@ std::string session_key(std::uint64_t number) {
 }
 
 std::string key_of_name(const std::string& name) {
-  constexpr std::string_view kDigits = "0123456789abcdef";
-  std::string key = "name.";
-  for (const char c : name) {
-    const auto byte = static_cast<unsigned char>(c);
-    key += kDigits[byte >> 4];
-    key += kDigits[byte & 15];
-  }
-  return key;
+  return "name." + to_hex(name);
 }
 
 std::optional<std::uint64_t> number_in_key(std::string_view key) {

@@ -118,11 +118,14 @@ SessionImage take_image(ClusterStreams& streams, const LocatedSession& session) 
     image.state = std::move(packed->state);
   }
   const std::string subject = log_subject(session.number);
+  LogParts parts;
   while (from <= image.last_message) {
-    const auto message = streams.logs.next(subject, from);
+    auto message = streams.logs.next(subject, from);
     if (!message) break;
-    for (const LogRecord& record : read_records(message->data)) std::visit(reader, record);
     from = message->sequence + 1;
+    const auto whole = parts.take(message->headers[kPartHeader], message->data);
+    if (!whole) continue;
+    for (const LogRecord& record : read_records(*whole)) std::visit(reader, record);
   }
   if (from <= image.last_message) {
     throw StorageError(StorageError::Kind::corrupt,

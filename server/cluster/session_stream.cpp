@@ -115,7 +115,7 @@ void SessionStream::send_next() {
       sending_.push_back(std::move(waiting_.front()));
       waiting_.pop_front();
     }
-    sending_bytes_ = write_records(records);
+    sending_parts_ = split_message(write_records(records));
     sending_id_ = std::to_string(epoch_) + "." + std::to_string(++writes_);
   }
   send();
@@ -128,8 +128,10 @@ void SessionStream::send() {
   {
     const std::lock_guard lock(mutex_);
     if (ended_) return;
-    bytes = sending_bytes_;
+    const LogPart& part = sending_parts_.front();
+    bytes = part.bytes;
     headers.emplace_back(kWriteHeader, sending_id_);
+    headers.emplace_back(kPartHeader, part.header);
     expected = last_message_;
   }
   streams_.logs.append(
@@ -152,7 +154,17 @@ void SessionStream::sent(const Stream::Appended& result) {
   }
 }
 
+bool SessionStream::stored_part(std::uint64_t message) {
+  const std::lock_guard lock(mutex_);
+  if (ended_ || sending_parts_.size() == 1) return false;
+  last_message_ = message;
+  sending_parts_.pop_front();
+  sending_id_ = std::to_string(epoch_) + "." + std::to_string(++writes_);
+  return true;
+}
+
 void SessionStream::stored(std::uint64_t message) {
+  if (stored_part(message)) return send();
   std::deque<Item> done;
   {
     const std::lock_guard lock(mutex_);

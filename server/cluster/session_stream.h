@@ -74,6 +74,8 @@ class SessionStream final : public SessionReplica,
   void send();
   void sent(const Stream::Appended& result);
   void stored(std::uint64_t message);
+  /// Notes that a part of the message is stored. Returns false if it was the last one.
+  bool stored_part(std::uint64_t message);
   /// Finds out whether the message was stored, although its acknowledgement is missing. Waits.
   void resolve();
   void retry();
@@ -94,8 +96,8 @@ class SessionStream final : public SessionReplica,
 
   mutable std::mutex mutex_;  // guards the members below
   std::deque<Item> waiting_;
-  std::deque<Item> sending_;  // records of the message that is being stored
-  std::string sending_bytes_;
+  std::deque<Item> sending_;           // records of the message that is being stored
+  std::deque<LogPart> sending_parts_;  // the first one is being stored
   std::string sending_id_;
   std::uint64_t last_message_;
   std::uint64_t last_entry_;

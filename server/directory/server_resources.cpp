@@ -63,6 +63,16 @@ std::optional<SessionNumber> number_of(const SessionId& id) {
   return is_replay ? kFirstReplay + number : number;
 }
 
+SavedStates* ServerResources::saved_states() const {
+  if (cluster) return &cluster->saved_states();
+  return storage ? &storage->states() : &saved_in_memory->states;
+}
+
+SavedScenes* ServerResources::saved_scenes() const {
+  if (cluster) return &cluster->saved_scenes();
+  return storage ? &storage->scenes() : &saved_in_memory->scenes;
+}
+
 ServerResources::ServerResources(const Catalogue& catalogue_in, ServerSettings settings_in,
                                  Clock& clock_in, const SessionMethods& methods)
     : catalogue(catalogue_in),
@@ -80,24 +90,10 @@ ServerResources::ServerResources(const Catalogue& catalogue_in, ServerSettings s
       saved_in_memory(storage ? nullptr : std::make_unique<SavedInMemory>()),
       cluster(make_cluster_node(settings, storage.get(), clock, runner.thread_count())),
       relay(make_relay_door(settings, cluster.get(), metrics, frame_threads, clock)),
-      environment{catalogue,
-                  settings.limits,
-                  settings.instructions,
-                  runner,
-                  metrics,
-                  budget,
-                  frame_threads,
-                  read_threads,
-                  tokens,
-                  clock,
-                  methods,
-                  &downloads,
-                  storage ? &storage->states() : &saved_in_memory->states,
-                  storage ? &storage->scenes() : &saved_in_memory->scenes,
-                  &memory,
-                  &storage_threads,
-                  cluster.get(),
-                  settings.device},
+      environment{catalogue,        settings.limits, settings.instructions, runner,         metrics,
+                  budget,           frame_threads,   read_threads,          tokens,         clock,
+                  methods,          &downloads,      saved_states(),        saved_scenes(), &memory,
+                  &storage_threads, cluster.get(),   settings.device},
       recovery_limits(without_scene_limits(settings.limits)),
       recovery_budget(kUnlimitedResources),
       recovery_environment{catalogue,     recovery_limits, settings.instructions,

@@ -22,8 +22,8 @@ namespace vat {
 /// Saved states and scenes of a server without a data folder. The data is deleted when the server
 /// ends.
 struct SavedInMemory {
-  SavedStates states{MainDatabase::kInMemory};
-  SavedScenes scenes{std::make_shared<MainDatabase>(MainDatabase::kInMemory)};
+  SavedStateDatabase states{MainDatabase::kInMemory};
+  SavedSceneDatabase scenes{std::make_shared<MainDatabase>(MainDatabase::kInMemory)};
 };
 
 /// Threads, storage and budgets that all sessions share. Each member depends only on previous
@@ -71,7 +71,9 @@ struct ServerResources {
   /// Results of scene.levels by scene of the catalogue. Only for use on `storage_requests`.
   mutable std::map<std::string, RpcResult> levels;
 
-  SavedScenes& saved_scenes() const { return *environment.scenes; }
+  /// Return the store of the cluster, of the data folder or in memory.
+  SavedStates* saved_states() const;
+  SavedScenes* saved_scenes() const;
 };
 
 }  // namespace vat

@@ -213,10 +213,10 @@ RpcResult SessionDirectory::create_from(const Json& scene, Level level, std::str
   return Json{{"session", std::get<SessionId>(created)}, {"tick", 0}};
 }
 
-std::vector<SessionDirectory::Listed> SessionDirectory::list(const PendingReply& reply) const {
+std::vector<ListedSession> SessionDirectory::list(const PendingReply& reply) const {
   const std::lock_guard lock(tables_.mutex);
   const Client* client = tables_.clients.find(reply);
-  std::vector<Listed> list;
+  std::vector<ListedSession> list;
   if (client == nullptr) return list;
   const std::string own_node = resources_.cluster ? resources_.cluster->name() : "";
   for (const auto& [number, session] : tables_.sessions.running()) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,6 +16,7 @@
 #include "server/cluster/cluster_host.h"
 #include "server/directory/access_control.h"
 #include "server/directory/admission.h"
+#include "server/directory/listed_session.h"
 #include "server/directory/replay_opener.h"
 #include "server/directory/server_resources.h"
 #include "server/directory/session_recoverer.h"
@@ -68,17 +70,11 @@ class SessionDirectory : private ClusterHost {
   /// are returned instead.
   std::optional<RpcError> create_later(PendingReply& reply, std::string name, Json scene,
                                        Level level);
-  struct Listed {
-    SessionId id;
-    SessionSummary summary;
-    /// "running", "recovering", "lost", or "elsewhere" on another node; only the first state has
-    /// more than a name.
-    const char* state;
-    bool is_closable = false;  ///< the client may close the session
-    std::string node;          ///< node of the cluster; empty: none, or no cluster
-  };
   /// Returns the sessions that the client may join.
-  std::vector<Listed> list(const PendingReply& reply) const;
+  std::vector<ListedSession> list(const PendingReply& reply) const;
+  /// Calls `done` later with the descriptions of the sessions on the other nodes of the cluster:
+  /// describe_session() with add_people(). Nodes that do not answer are missing.
+  void describe_elsewhere(std::function<void(const std::map<SessionId, Json>&)> done);
   /// Joins a session, or the first session if `id` is absent. The session answers, if necessary
   /// after its recovery. Errors that are known immediately are returned instead.
   std::optional<RpcError> join(PendingReply& reply, const std::optional<SessionId>& id,
@@ -94,9 +90,6 @@ class SessionDirectory : private ClusterHost {
   /// Sends a request about the session that its parameters name to the owner of the session, or
   /// answers with the error `moved`. Returns false if another node does not have the session.
   bool ask_owner(PendingReply& reply, const RpcRequest& request);
-  /// Creates a session from a saved scene at the node of the client's session, whose scenes the
-  /// client uses. Returns false if this node creates the session.
-  bool create_at_owner(PendingReply& reply, const RpcRequest& request);
   /// Returns the function that notes a result of replay.open on another node, see NoteResult of
   /// RelayedClient.
   std::function<void(Json& result)> note_replay_of(ConnectionId creator);
@@ -143,6 +136,7 @@ class SessionDirectory : private ClusterHost {
   void create_for(const std::string& request,
                   std::function<void(const std::string&)> answer) override;
   std::map<std::uint64_t, std::string> replays() const override;
+  std::map<std::uint64_t, std::string> describe_sessions() const override;
   void cluster_changed() override;
   /// Answers with a session that was created for another node, and a ticket for its owner.
   void answer_created(const SessionId& id, const std::function<void(const std::string&)>& answer);
@@ -156,13 +150,13 @@ class SessionDirectory : private ClusterHost {
   /// waits for one, and the function returns nothing. `is_missing` is set if there is no session.
   std::optional<RpcError> join_elsewhere(PendingReply& reply, const std::optional<SessionId>& id,
                                          JoinRequest& request, bool& is_missing);
-  /// Keeps the request until the other nodes have listed their replays, if the id is that of a
-  /// replay. Returns false otherwise.
+  /// If the id is that of a replay, keeps the request until the other nodes have told their
+  /// replays. Returns false otherwise.
   bool wait_for_replay(PendingReply& reply, const std::optional<SessionId>& id,
                        JoinRequest& request);
   /// Returns a session of the cluster that this node does not own.
   std::optional<LocatedSession> find_elsewhere(const std::optional<SessionId>& id) const;
-  void add_elsewhere(const Client& client, std::vector<Listed>& list) const;
+  void add_elsewhere(const Client& client, std::vector<ListedSession>& list) const;
   /// Remembers the ticket for a session that the client has created on another node.
   void keep_ticket(ConnectionId creator, const RpcResult& created);
   /// Returns whether the owner of a session may accept a client. It may be stopping, or may have
@@ -214,12 +208,10 @@ class SessionDirectory : private ClusterHost {
   const std::unique_ptr<Timer> expiry_timer_;
   SteadyClock::time_point queue_check_{};  // next check of the queues; guarded by the lock
   bool drain_time_is_over_ = false;        // guarded by the lock
-  /// Requests session.join for sessions without an owner and for unknown replays; guarded by the
-  /// lock.
+  /// Requests session.join for sessions without an owner; guarded by the lock.
   struct WaitingJoin {
-    std::optional<SessionId> id;
+    SessionId id;
     AbsentSession::Waiting join;
-    std::optional<SteadyClock::time_point> until{};  ///< set: for an unknown replay
   };
   std::vector<WaitingJoin> waiting_joins_;
   std::function<void()> cluster_change_;

@@ -179,9 +179,12 @@ bool SessionDirectory::wait_for_replay(PendingReply& reply, const std::optional<
   if (resources_.cluster == nullptr || !id || number_of(*id).value_or(0) < kFirstReplay) {
     return false;
   }
-  waiting_joins_.push_back({id,
-                            {std::move(reply), std::move(request)},
-                            resources_.clock.now() + resources_.cluster->entry_age()});
+  resources_.cluster->refresh_replays([this, id, request = std::move(request),
+                                       waiting = std::make_shared<PendingReply>(std::move(reply))] {
+    if (auto error = join_or_wait(*waiting, id, request, false)) {
+      waiting->answer(*std::move(error));
+    }
+  });
   return true;
 }
 
@@ -206,20 +209,38 @@ void SessionDirectory::cluster_changed() {
     const std::lock_guard lock(tables_.mutex);
     waiting.swap(waiting_joins_);
   }
-  const auto now = resources_.clock.now();
   for (WaitingJoin& one : waiting) {
-    const bool is_due = !one.until || now >= *one.until || find_elsewhere(one.id);
-    if (!is_due) {
-      const std::lock_guard lock(tables_.mutex);
-      waiting_joins_.push_back(std::move(one));
-    } else if (auto error =
-                   join_or_wait(one.join.reply, one.id, std::move(one.join.request), !one.until)) {
+    if (auto error = join(one.join.reply, one.id, std::move(one.join.request))) {
       one.join.reply.answer(*std::move(error));
     }
   }
 }
 
-void SessionDirectory::add_elsewhere(const Client& client, std::vector<Listed>& list) const {
+std::map<std::uint64_t, std::string> SessionDirectory::describe_sessions() const {
+  std::map<std::uint64_t, std::string> descriptions;
+  const std::lock_guard lock(tables_.mutex);
+  for (const auto& [number, session] : tables_.sessions.running()) {
+    const ListedSession listed{to_id(number), session->summary(), "running", false,
+                               resources_.cluster->name()};
+    Json description = describe_session(listed);
+    add_people(description, listed.summary);
+    descriptions[number] = description.dump();
+  }
+  return descriptions;
+}
+
+void SessionDirectory::describe_elsewhere(
+    std::function<void(const std::map<SessionId, Json>&)> done) {
+  VAT_CHECK(resources_.cluster != nullptr);
+  resources_.cluster->describe_sessions(
+      [done = std::move(done)](const ClusterNode::Descriptions& texts) {
+        std::map<SessionId, Json> descriptions;
+        for (const auto& [number, text] : texts) descriptions[to_id(number)] = Json::parse(text);
+        done(descriptions);
+      });
+}
+
+void SessionDirectory::add_elsewhere(const Client& client, std::vector<ListedSession>& list) const {
   VAT_CHECK(tables_.mutex.is_held());
   if (resources_.cluster == nullptr) return;
   std::vector<LocatedSession> all = resources_.cluster->sessions();

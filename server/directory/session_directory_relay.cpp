@@ -78,21 +78,6 @@ bool SessionDirectory::ask_owner(PendingReply& reply, const RpcRequest& request)
   return true;
 }
 
-bool SessionDirectory::create_at_owner(PendingReply& reply, const RpcRequest& request) {
-  const auto scene = request.params.find("scene");
-  const bool is_named = scene != request.params.end() && scene->is_string();
-  if (!is_named || resources_.catalogue.find(scene->get_ref<const std::string&>())) return false;
-  const std::lock_guard lock(tables_.mutex);
-  const Client* const client = tables_.clients.find(reply);
-  if (client == nullptr || client->relay == nullptr || client->relay->has_left()) return false;
-  const RelayPlace& place = client->relay->place();
-  const auto note = [this, creator = client->outbox->id()](Json& result) {
-    keep_ticket(creator, result);
-  };
-  send_request(*client, reply, request, place.session, {place.owner, place.epoch}, note);
-  return true;
-}
-
 void SessionDirectory::send_request(const Client& client, PendingReply& reply,
                                     const RpcRequest& request, const SessionId& session,
                                     const RelayDoor::Owner& owner,

@@ -2,6 +2,10 @@
 
 #include <chrono>
 #include <cmath>
+#include <map>
+#include <memory>
+#include <utility>
+#include <variant>
 
 #include "core/limits.h"
 #include "server/methods/handlers.h"
@@ -12,30 +16,35 @@ namespace {
 
 constexpr double kMaxDrainSeconds = 3600;
 
-Json describe_people(const SessionSummary& summary) {
-  Json people = Json::array();
-  if (summary.people == nullptr) return people;
-  for (const PersonSummary& person : *summary.people) {
-    Json one{{"participant", person.number},
-             {"name", person.name},
-             {"role", to_string(person.role)},
-             {"away", person.address.empty()}};
-    if (!person.address.empty()) one["address"] = person.address;
-    people.push_back(std::move(one));
+/// Completes the sessions of other nodes by the descriptions of these nodes, and adds the sessions
+/// that this node does not know yet.
+Json with_descriptions(Json list, std::map<SessionId, Json> descriptions) {
+  Json& sessions = list.at("sessions");
+  for (Json& session : sessions) {
+    auto described = descriptions.extract(session.at("session").get<SessionId>());
+    if (described.empty() || session.at("state") != "elsewhere") continue;
+    session = std::move(described.mapped());
+    session["state"] = "elsewhere";
   }
-  return people;
-}
-
-void add_people(Json& session, const SessionSummary& summary) {
-  session["hibernating"] = summary.hibernating;
-  session["participants"] = describe_people(summary);
+  for (auto& [id, session] : descriptions) {
+    session["state"] = "elsewhere";
+    sessions.push_back(std::move(session));
+  }
+  return list;
 }
 
 }  // namespace
 
 ServerAction read_server_sessions(ObjectReader&, Errors&) {
-  return [](SessionDirectory& directory, PendingReply& reply) {
-    return list_sessions(directory, reply, add_people);
+  return [](SessionDirectory& directory, PendingReply& reply) -> std::optional<RpcResult> {
+    RpcResult list = list_sessions(directory, reply, add_people);
+    if (directory.resources().cluster == nullptr) return list;
+    directory.describe_elsewhere([list = std::get<Json>(std::move(list)),
+                                  waiting = std::make_shared<PendingReply>(std::move(reply))](
+                                     const std::map<SessionId, Json>& descriptions) {
+      waiting->answer(with_descriptions(list, descriptions));
+    });
+    return {};
   };
 }
 

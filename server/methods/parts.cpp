@@ -85,14 +85,9 @@ std::optional<RpcError> refuse_held_body(SessionCore& core, const Participant& p
 RpcResult list_sessions(const SessionDirectory& directory, const PendingReply& reply,
                         void (*add)(Json& session, const SessionSummary& summary)) {
   Json sessions = Json::array();
-  for (const auto& [id, summary, state, is_closable, node] : directory.list(reply)) {
-    Json session{{"session", id},          {"name", summary.name},
-                 {"state", state},         {"kind", summary.is_replay ? "replay" : "live"},
-                 {"scene", summary.scene}, {"playing", summary.playing},
-                 {"tick", summary.tick},   {"particles", summary.particles},
-                 {"closable", is_closable}};
-    if (!node.empty()) session["node"] = node;
-    add(session, summary);
+  for (const ListedSession& listed : directory.list(reply)) {
+    Json session = describe_session(listed);
+    add(session, listed.summary);
     sessions.push_back(std::move(session));
   }
   return Json{{"sessions", std::move(sessions)}};

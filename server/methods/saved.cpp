@@ -8,7 +8,7 @@
 #include "server/session/core/saved_state.h"
 #include "server/session/core/scene_loading.h"
 #include "server/session/session_archive.h"
-#include "server/storage/saved_scenes.h"
+#include "server/storage/saved/saved_scenes.h"
 
 namespace vat {
 namespace {
@@ -31,9 +31,11 @@ std::variant<Scene, RpcError> scene_to_save(const SessionCore& core, const Scene
   return scene;
 }
 
-/// Whether the scene may be replaced or deleted with this key or role.
-bool may_change(const SavedScene& scene, const std::string& key, Role role) {
-  return role == Role::admin || are_same(scene.key, hash_of_token(key));
+/// Returns whether a user with this key or role may replace or delete a scene.
+SavedScenes::MayChange permission_of(const std::string& key, Role role) {
+  return [key, role](const SceneKey& of_scene) {
+    return role == Role::admin || are_same(of_scene, hash_of_token(key));
+  };
 }
 
 RpcError scene_of_another(const std::string& name) {
@@ -50,17 +52,17 @@ SavedSceneLimits limits_of(const ServerLimits& limits) {
 /// a storage thread.
 RpcResult write_saved_scene(const SessionEnvironment& environment, SavedScene saved,
                             const std::string& replaced_key, Role role) {
-  const std::string& name = saved.entry.name;
-  const auto before = environment.scenes->find(name);
-  if (before && !may_change(*before, replaced_key, role)) return scene_of_another(name);
+  const std::string name = saved.entry.name;
+  const std::size_t bytes = saved.scene.size();
   const std::string key = make_token();
-  if (before) saved.address = before->address;
-  saved.key = before ? before->key : hash_of_token(key);
-  if (const auto excess = environment.scenes->write(saved, limits_of(environment.limits))) {
-    return limit_reached(excess->limit, excess->maximum);
-  }
-  Json answer{{"name", name}, {"bytes", saved.scene.size()}};
-  if (!before) answer["key"] = key;
+  saved.key = hash_of_token(key);
+  const auto written = environment.scenes->write(std::move(saved), limits_of(environment.limits),
+                                                 permission_of(replaced_key, role));
+  if (const auto* excess = std::get_if<LimitExcess>(&written)) return limit_reached(*excess);
+  const SceneChange change = std::get<SceneChange>(written);
+  if (change == SceneChange::refused) return scene_of_another(name);
+  Json answer{{"name", name}, {"bytes", bytes}};
+  if (change == SceneChange::added) answer["key"] = key;
   return answer;
 }
 
@@ -91,10 +93,9 @@ ActionResult save_scene(const SessionCore& core, const Participant& participant,
 
 RpcResult delete_scene(SavedScenes& scenes, const std::string& name, const std::string& key,
                        Role role) {
-  const auto scene = scenes.find(name);
-  if (!scene) return no_such_scene(name, "/name");
-  if (!may_change(*scene, key, role)) return scene_of_another(name);
-  scenes.remove(name);
+  const SceneChange change = scenes.remove(name, permission_of(key, role));
+  if (change == SceneChange::absent) return no_such_scene(name, "/name");
+  if (change == SceneChange::refused) return scene_of_another(name);
   return Json::object();
 }
 
@@ -174,9 +175,8 @@ ServerAction read_scene_delete(ObjectReader& params, Errors& errors) {
   if (params.has("key")) key = params.text("key", kMaxTokenBytes);
   return [name, key](SessionDirectory& directory, PendingReply& reply) -> std::optional<RpcResult> {
     const Role role = directory.find_client(reply.client()->id()).role;
-    directory.use_storage(reply, [&scenes = directory.resources().saved_scenes(), name, key, role] {
-      return delete_scene(scenes, name, key, role);
-    });
+    directory.use_storage(reply, [&scenes = *directory.resources().environment.scenes, name, key,
+                                  role] { return delete_scene(scenes, name, key, role); });
     return {};
   };
 }

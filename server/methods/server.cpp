@@ -118,7 +118,7 @@ RpcResult list_scenes(const ServerResources& resources) {
     scenes.push_back(
         {{"name", entry.name}, {"title", entry.title}, {"description", entry.description}});
   }
-  for (const SavedSceneEntry& entry : resources.saved_scenes().list()) {
+  for (const SavedSceneEntry& entry : resources.environment.scenes->list()) {
     if (resources.catalogue.find(entry.name) != nullptr) continue;  // it has got one since
     scenes.push_back({{"name", entry.name},
                       {"title", entry.title},

@@ -67,6 +67,15 @@ std::uint64_t Bucket::remove(const std::string& key, std::uint64_t revision) {
   return stream_.append(subject(key), {}, revision, {{kOperation, "DEL"}});
 }
 
+std::uint64_t Bucket::put_after(const std::string& key, const std::string& value,
+                                std::uint64_t last_revision) {
+  return stream_.append_after(subject(key), value, last_revision);
+}
+
+std::uint64_t Bucket::remove_after(const std::string& key, std::uint64_t last_revision) {
+  return stream_.append_after(subject(key), {}, last_revision, {{kOperation, "DEL"}});
+}
+
 void Bucket::drop_mark(const std::string& key, std::uint64_t revision) {
   stream_.purge_later(subject(key), revision + 1);
 }

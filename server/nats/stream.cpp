@@ -74,6 +74,18 @@ std::string decode_text(const Json& message, const char* member) {
   return {bytes->begin(), bytes->end()};
 }
 
+/// Returns the headers of a message that requires the last message of its subject.
+NatsConnection::Headers headers_after(const std::string& subject, std::uint64_t expected,
+                                      const NatsConnection::Headers& headers) {
+  NatsConnection::Headers all{{"Nats-Expected-Last-Subject-Sequence", std::to_string(expected)}};
+  // Groups of servers compare the sequence before they order concurrent messages, and would store
+  // several with the same `expected`. They compare the identifiers of messages after it. The
+  // sequence 0 is compared after it as well.
+  if (expected > 0) all.emplace_back("Nats-Msg-Id", subject + "." + std::to_string(expected));
+  all.insert(all.end(), headers.begin(), headers.end());
+  return all;
+}
+
 /// Calls `operation` again while no server answers, for example during the election of a leader.
 template <class Operation>
 auto repeat_until_answered(const Operation& operation) {
@@ -174,13 +186,7 @@ void Stream::send(const std::string& subject, const NatsConnection::Headers& hea
 
 void Stream::append(const std::string& subject, const std::string& data, std::uint64_t expected,
                     const NatsConnection::Headers& headers, std::function<void(Appended)> done) {
-  NatsConnection::Headers all{{"Nats-Expected-Last-Subject-Sequence", std::to_string(expected)}};
-  // Groups of servers compare the sequence before they order concurrent messages, and would store
-  // several with the same `expected`. They compare the identifiers of messages after it. The
-  // sequence 0 is compared after it as well.
-  if (expected > 0) all.emplace_back("Nats-Msg-Id", subject + "." + std::to_string(expected));
-  all.insert(all.end(), headers.begin(), headers.end());
-  send(subject, all, data, std::move(done));
+  send(subject, headers_after(subject, expected, headers), data, std::move(done));
 }
 
 void Stream::append(const std::string& subject, const std::string& data,
@@ -190,11 +196,27 @@ void Stream::append(const std::string& subject, const std::string& data,
 
 std::uint64_t Stream::append(const std::string& subject, const std::string& data,
                              std::uint64_t expected, const NatsConnection::Headers& headers) {
+  return send_until_answered(subject, headers_after(subject, expected, headers), data, expected);
+}
+
+std::uint64_t Stream::append_after(const std::string& subject, const std::string& data,
+                                   std::uint64_t last_sequence,
+                                   const NatsConnection::Headers& headers) {
+  const std::string expected = std::to_string(last_sequence);
+  NatsConnection::Headers all{{"Nats-Expected-Last-Sequence", expected},
+                              {"Nats-Msg-Id", "last." + expected}};
+  all.insert(all.end(), headers.begin(), headers.end());
+  return send_until_answered(subject, all, data, last_sequence);
+}
+
+std::uint64_t Stream::send_until_answered(const std::string& subject,
+                                          const NatsConnection::Headers& headers,
+                                          const std::string& data, std::uint64_t expected) {
   bool may_be_stored = false;  // by an earlier attempt
   return repeat_until_answered([&]() -> std::uint64_t {
     const auto promise = std::make_shared<std::promise<Appended>>();
-    append(subject, data, expected, headers,
-           [promise](Appended result) { promise->set_value(std::move(result)); });
+    send(subject, headers, data,
+         [promise](Appended result) { promise->set_value(std::move(result)); });
     const Appended result = promise->get_future().get();
     const auto* error = std::get_if<NatsError>(&result);
     if (error == nullptr) return std::get<std::uint64_t>(result);

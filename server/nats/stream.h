@@ -49,6 +49,10 @@ class Stream {
   /// As append(), but waits. Repeats the attempt for some seconds while no server answers.
   std::uint64_t append(const std::string& subject, const std::string& data, std::uint64_t expected,
                        const NatsConnection::Headers& headers = {});
+  /// As append(), but requires that the last message of the whole stream has this sequence.
+  std::uint64_t append_after(const std::string& subject, const std::string& data,
+                             std::uint64_t last_sequence,
+                             const NatsConnection::Headers& headers = {});
   /// Appends a message regardless of the subject's last message.
   void append(const std::string& subject, const std::string& data,
               std::function<void(Appended)> done);
@@ -74,6 +78,11 @@ class Stream {
   void create(const Settings& settings);
   Json call(const std::string& method, const Json& params);
   std::optional<StoredMessage> get(const Json& params);
+  /// Sends a message and waits. Repeats the attempt for some seconds while no server answers. The
+  /// stream refuses the message if it has a message of the subject after `expected`.
+  std::uint64_t send_until_answered(const std::string& subject,
+                                    const NatsConnection::Headers& headers, const std::string& data,
+                                    std::uint64_t expected);
   void send(const std::string& subject, const NatsConnection::Headers& headers,
             const std::string& data, std::function<void(Appended)> done);
 

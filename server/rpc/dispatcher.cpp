@@ -39,11 +39,7 @@ bool is_for_owner(const RpcRequest& request, const std::string& session) {
     const auto named = request.params.find("session");
     return named != request.params.end() && *named == session;
   }
-  // Scenes are saved on the node of the session.
-  const bool concerns_scenes =
-      row.name == "scene.list" || row.name == "scene.levels" || row.name == "scene.delete";
-  const bool is_of_session = std::holds_alternative<SessionHandler>(method->handler);
-  return concerns_scenes || (is_of_session && !controls_frames(row.name));
+  return std::holds_alternative<SessionHandler>(method->handler) && !controls_frames(row.name);
 }
 
 RpcError unknown_method(std::string_view name) {
@@ -181,7 +177,6 @@ std::optional<RpcResult> Dispatcher::call(PendingReply& reply,
       if (auto error = refuse_role(row, role)) return *std::move(error);
     }
     if (names_session(row) && directory_.ask_owner(reply, request)) return {};
-    if (row.name == "session.create" && directory_.create_at_owner(reply, request)) return {};
     Errors errors;
     ObjectReader params(request.params, "", errors);
     const ServerAction action = (*handler)(params, errors);

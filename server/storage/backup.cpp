@@ -6,7 +6,7 @@
 
 #include "server/storage/checkpoint_store.h"
 #include "server/storage/data_folder.h"
-#include "server/storage/saved_states.h"
+#include "server/storage/saved/saved_state_database.h"
 #include "server/storage/sqlite/main_database.h"
 #include "server/storage/sqlite/schema.h"
 

@@ -12,8 +12,8 @@
 #include "server/storage/data_folder.h"
 #include "server/storage/journal.h"
 #include "server/storage/recent_states.h"
-#include "server/storage/saved_scenes.h"
-#include "server/storage/saved_states.h"
+#include "server/storage/saved/saved_scene_database.h"
+#include "server/storage/saved/saved_state_database.h"
 #include "server/storage/session_store.h"
 #include "server/storage/sqlite/storage_settings.h"
 #include "server/storage/storage_counts.h"
@@ -41,8 +41,8 @@ class Storage {
   Journal& journal() { return journal_; }
   CheckpointStore& checkpoints() { return checkpoints_; }
   RecentStates& recent_states() { return recent_states_; }
-  SavedStates& states() { return states_; }
-  SavedScenes& scenes() { return scenes_; }
+  SavedStateDatabase& states() { return states_; }
+  SavedSceneDatabase& scenes() { return scenes_; }
   TokenStore& tokens() { return tokens_; }
 
   /// Runs a task on the storage's thread, in the order of the calls. Exceptions are logged.
@@ -77,8 +77,8 @@ class Storage {
   SessionStore sessions_;
   CheckpointStore checkpoints_;
   RecentStates recent_states_;
-  SavedStates states_;
-  SavedScenes scenes_;
+  SavedStateDatabase states_;
+  SavedSceneDatabase scenes_;
   TokenStore tokens_;
   Journal journal_;
   std::atomic<std::size_t> open_logs_ = 0;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "server/nats/stream.h"
 #include "tests/cluster/nodes.h"
 #include "tests/server/transport/transport_client.h"
 #include "tests/support/wait.h"
@@ -141,7 +142,7 @@ TEST_F(AnyNode, ACreatorClosesItsSessionWithoutJoining) {
   creator.result("session.close", {{"session", id}});
 }
 
-TEST_F(AnyNode, ScenesOfTheOwnerAreUsedAtARelay) {
+TEST_F(AnyNode, AParticipantAtARelayOwnsASessionOfItsScene) {
   start(2, "relay");
   WaitingClient client = nodes->connect(relay);
   client.result("session.join", {{"session", kSession}});
@@ -153,6 +154,111 @@ TEST_F(AnyNode, ScenesOfTheOwnerAreUsedAtARelay) {
   client.result("session.join", {{"session", kSession}});
   client.result("scene.delete", {{"name", "bay"}, {"key", saved.at("key")}});
   EXPECT_THAT(client.result("scene.list").dump(), testing::Not(testing::HasSubstr("\"bay\"")));
+}
+
+// Results of all nodes, except ticks.
+TEST_F(AnyNode, SavedDataIsTheSameAtEachNode) {
+  start(3, "relay");
+  std::vector<WaitingClient> clients;
+  for (const char* const node : {"a", "b", "c"}) {
+    clients.push_back(nodes->connect(node));
+    clients.back().result("session.join", {{"session", kSession}});
+  }
+  const struct {
+    const char* method;
+    Json params;
+    const char* content;  // of the result
+  } cases[] = {
+      {"session.saves", Json::object(), R"("name":"calm")"},
+      {"scene.list", Json::object(), R"("name":"bay")"},
+      {"scene.get", {{"scene", "bay"}}, R"("name":"bay")"},
+      {"session.load", {{"name", "calm"}}, "{"},
+      {"scene.load", {{"scene", "bay"}}, "{"},
+      {"scene.levels", {{"scene", "pool"}}, R"("level":"normal")"},
+  };
+  std::string key;
+  for (std::size_t saver = 0; saver < clients.size(); ++saver) {
+    clients[saver].result("session.save", {{"name", "calm"}});
+    key = clients[saver].result("scene.save", {{"name", "bay"}, {"key", key}}).value("key", key);
+    for (const auto& one : cases) {
+      std::vector<Json> results;
+      for (WaitingClient& client : clients) {
+        results.push_back(client.result(one.method, one.params));
+        EXPECT_THAT(results.back().dump(), testing::HasSubstr(one.content)) << one.method;
+        results.back().erase("tick");
+        if (one.method != std::string("scene.levels")) {  // measured
+          EXPECT_EQ(results.back(), results.front()) << one.method;
+        }
+      }
+    }
+  }
+  clients[0].result("session.delete_save", {{"name", "calm"}});
+  clients[1].result("scene.delete", {{"name", "bay"}, {"key", key}});
+  for (WaitingClient& client : clients) {
+    EXPECT_TRUE(client.result("session.saves").at("states").empty());
+    EXPECT_THAT(client.result("scene.list").dump(),
+                testing::Not(testing::HasSubstr(R"("name":"bay")")));
+    const Json missing = client.call("session.load", {{"name", "calm"}});
+    EXPECT_EQ(missing.at("error").at("data").at("path"), "/name");
+    EXPECT_EQ(client.call("scene.get", {{"scene", "bay"}}).at("error").at("data").at("kind"),
+              "no_such_scene");
+  }
+}
+
+TEST_F(AnyNode, SavedDataOutlivesItsNodeAndGoesWithTheSession) {
+  start(2, "redirect");
+  auto joined = nodes->join(kSession, owner, {{"name", "Ada"}});
+  joined.client.result("session.save", {{"name", "calm"}});
+  joined.client.result("scene.save", {{"name", "bay"}});
+  const Json before = joined.client.result("session.saves").at("states");
+  nodes->process(owner).kill();
+  auto next = nodes->join(kSession, relay);
+  ASSERT_EQ(next.node, relay);
+  EXPECT_EQ(next.client.result("session.saves").at("states"), before);
+  next.client.result("control.pause");
+  next.client.result("session.load", {{"name", "calm"}});
+  EXPECT_EQ(next.client.result("session.hash").at("hash"), before.at(0).at("hash"));
+  const Json created = next.client.result("session.create", {{"name", "bay"}, {"scene", "bay"}});
+  EXPECT_EQ(created.count("session"), 1U);
+
+  WaitingClient admin = connect(relay, kAdmin);
+  admin.result("session.close", {{"session", kSession}});
+  NatsConnection connection({nodes->nats().urls(), "test", {}, {}, {}, {}});
+  Stream contents(connection, {"vat-saved", "vat.saved.>", Stream::Milliseconds(0), 0, {}});
+  ASSERT_TRUE(wait_until([&] { return contents.subjects("vat.saved.s1.>").empty(); }));
+  EXPECT_THAT(admin.result("scene.list").dump(), testing::HasSubstr(R"("name":"bay")"));
+}
+
+TEST_F(AnyNode, AnAdminSeesAllParticipantsAtEachNode) {
+  for (const std::string route : {"relay", "redirect"}) {
+    start(2, route);
+    auto joined = nodes->join(kSession, relay, {{"name", "Ada"}});
+    const std::string replay =
+        joined.client.result("replay.open", {{"session", kSession}}).at("session");
+    std::optional<WaitingClient> viewer(nodes->connect(joined.node));
+    viewer->result("session.join", {{"session", replay}, {"name", "Bo"}});
+    for (const std::string& node : {owner, relay}) {
+      WaitingClient admin = connect(node, kAdmin);
+      std::map<std::string, Json> sessions;
+      const Json list = admin.result("server.sessions");
+      for (const Json& session : list.at("sessions")) sessions[session.at("session")] = session;
+      ASSERT_TRUE(sessions.contains(kSession) && sessions.contains(replay)) << list;
+      for (const auto& [id, name] : {std::pair<std::string, std::string>(kSession, "Ada"),
+                                     std::pair<std::string, std::string>(replay, "Bo")}) {
+        const Json& session = sessions.at(id);
+        EXPECT_EQ(session.at("node"), owner) << route << id;
+        EXPECT_EQ(session.at("state"), node == owner ? "running" : "elsewhere") << route << id;
+        EXPECT_EQ(session.at("scene"), "pool") << route << id;
+        EXPECT_GT(session.at("particles"), 0) << route << id;
+        EXPECT_EQ(session.at("hibernating"), false) << route << id;
+        ASSERT_EQ(session.at("participants").size(), 1U) << route << id;
+        const Json& person = session.at("participants").at(0);
+        EXPECT_EQ(person.at("name"), name) << route;
+        EXPECT_EQ(person.at("away"), false) << route;
+        EXPECT_EQ(person.at("address"), "127.0.0.1") << route;
+      }
+    }
+  }
 }
 
 TEST_F(AnyNode, ServesADownloadOfAnotherNode) {

@@ -35,9 +35,12 @@ ClusterPast read_cluster_log(const std::vector<std::string>& urls) {
   std::vector<LogEntry>& log = read.past.log;
   std::uint64_t position = 0;
   std::uint64_t from = 1;
-  while (const auto message = streams.logs.next(log_subject(1), from)) {
+  LogParts parts;
+  while (auto message = streams.logs.next(log_subject(1), from)) {
     from = message->sequence + 1;
-    for (const LogRecord& record : read_records(message->data)) {
+    const auto whole = parts.take(message->headers[kPartHeader], message->data);
+    if (!whole) continue;
+    for (const LogRecord& record : read_records(*whole)) {
       if (const auto* entries = std::get_if<EntriesRecord>(&record)) {
         for (const LogEntry& entry : entries->entries) {
           EXPECT_EQ(entry.sequence, log.size() + 1);  // each entry once, in one order

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <map>
 #include <mutex>
 #include <set>
 #include <vector>
@@ -15,6 +14,7 @@
 #include "server/relay/relay_feed.h"
 #include "server/relay/relay_message.h"
 #include "tests/cluster/nodes.h"
+#include "tests/cluster/received_frames.h"
 #include "tests/support/mixed_scenes.h"
 #include "tests/support/wait.h"
 
@@ -99,32 +99,6 @@ TEST(RelayFrames, AStateHasTheContentOfItsFrame) {
   }
 }
 
-/// Frames that a client has received.
-struct Received {
-  std::atomic<int> count = 0;
-  std::mutex mutex;
-  std::uint64_t tick = 0;  // of the last one, as the next members
-  double max_error = 0;
-  std::map<std::string, std::vector<Vec3>> positions;
-  bool has_speed = false;
-
-  void note(const client::Frame& frame) {
-    const std::lock_guard lock(mutex);
-    tick = frame.tick;
-    max_error = frame.max_error;
-    for (const auto& body : frame.bodies) {
-      positions[std::string(body.name)].assign(body.positions.begin(), body.positions.end());
-      has_speed = has_speed || !body.speed.empty();
-    }
-    ++count;
-  }
-  client::Handlers handlers() {
-    client::Handlers handlers;
-    handlers.on_frame = [this](const client::Frame& frame) { note(frame); };
-    return handlers;
-  }
-};
-
 TEST(Relay, GivesTheAnswersAndFramesOfTheOwner) {
   Nodes nodes(2, kRelay);
   const std::string owner = nodes.owner_of(kSession, "a");
@@ -152,17 +126,7 @@ TEST(Relay, GivesTheAnswersAndFramesOfTheOwner) {
     return direct.tick == stepped.tick && relayed.tick == stepped.tick;
   }));
   const std::scoped_lock lock(direct.mutex, relayed.mutex);
-  ASSERT_EQ(direct.positions.size(), relayed.positions.size());
-  for (const auto& [name, positions] : direct.positions) {
-    const std::vector<Vec3>& others = relayed.positions.at(name);
-    ASSERT_EQ(positions.size(), others.size()) << name;
-    for (std::size_t i = 0; i < positions.size(); ++i) {
-      // The relay's frame adds the error of the finest grid.
-      ASSERT_LE((positions[i] - others[i]).cwiseAbs().maxCoeff(),
-                direct.max_error + 1.1 * relayed.max_error)
-          << name << ' ' << i;
-    }
-  }
+  expect_same_positions(direct, relayed);
   EXPECT_FALSE(relayed.has_speed);
 }
 

@@ -9,6 +9,7 @@
 
 #include "server/cluster/session_reader.h"
 #include "server/storage/sqlite/compression.h"
+#include "server/support/base64.h"
 #include "tests/cluster/nats_servers.h"
 #include "tests/support/wait.h"
 
@@ -119,6 +120,61 @@ TEST_F(SessionStreamTest, AnotherNodeReadsWhatWasStored) {
   EXPECT_EQ(image.stored.progress->position, 41U);
   EXPECT_EQ(image.stored.progress->hash, 0xffffffffffffffff);
   EXPECT_FALSE(image.state);
+}
+
+// A saved state that is loaded, or a scene with meshes.
+TEST_F(SessionStreamTest, ALongMessageIsStoredInParts) {
+  const auto stream = create();
+  const std::vector<std::uint8_t> bytes = make_bytes(3 * LogPart::kBytes);
+  const std::string params = Json(to_base64(bytes)).dump();
+  EXPECT_EQ(append(*stream, {make_entry(1), make_entry(2, params)}), Failure());
+  EXPECT_GT(streams.logs.last_sequence(), 3U);
+  EXPECT_EQ(append(*stream, {make_entry(3)}), Failure());
+  const SessionImage image = take(2);
+  EXPECT_THAT(sequences_of(image), ElementsAre(1, 2, 3));
+  EXPECT_TRUE(image.entries[1].params == params);
+}
+
+// The parts of a message whose owner lost the session have no effect.
+TEST_F(SessionStreamTest, APartWithoutTheRestIsIgnored) {
+  const auto stream = create();
+  EXPECT_EQ(append(*stream, {make_entry(1)}), Failure());
+  const auto last = streams.logs.last(log_subject(kSession));
+  ASSERT_TRUE(last);
+  const std::string message =
+      write_records({EntriesRecord{{make_entry(2, to_base64(make_bytes(2 * LogPart::kBytes)))}}});
+  const LogPart part = split_message(message).front();
+  streams.logs.append(log_subject(kSession), part.bytes, last->sequence,
+                      {{kPartHeader, part.header}});
+  const SessionImage image = take(2);
+  EXPECT_THAT(sequences_of(image), ElementsAre(1));
+  const auto next = open(place_after(image, 2));
+  EXPECT_EQ(append(*next, {make_entry(2)}), Failure());
+  EXPECT_THAT(sequences_of(take(3)), ElementsAre(1, 2));
+}
+
+TEST(LogPartsTest, AreJoinedInTheirOrder) {
+  LogParts parts;
+  EXPECT_EQ(parts.take("", "whole"), "whole");
+  EXPECT_FALSE(parts.take("0/3", "a"));
+  EXPECT_FALSE(parts.take("1/3", "b"));
+  EXPECT_EQ(parts.take("2/3", "c"), "abc");
+  EXPECT_FALSE(parts.take("0/2", "x"));
+  EXPECT_EQ(parts.take("", "whole"), "whole");
+  EXPECT_FALSE(parts.take("0/2", "y"));
+  EXPECT_EQ(parts.take("0/1", "short"), "short");
+  for (const char* const header : {"1/2", "x", "0", "0/", "/2"}) {
+    EXPECT_THROW(parts.take(header, ""), StorageError) << header;
+  }
+  for (const std::size_t size : {std::size_t{0}, LogPart::kBytes, LogPart::kBytes + 1}) {
+    const std::string message(size, 'm');
+    std::optional<std::string> joined;
+    for (const LogPart& part : split_message(message)) {
+      EXPECT_FALSE(joined) << size;
+      joined = parts.take(part.header, part.bytes);
+    }
+    EXPECT_TRUE(joined == message) << size;
+  }
 }
 
 TEST_F(SessionStreamTest, ThePreviousOwnerStoresNothingAfterATakeOver) {

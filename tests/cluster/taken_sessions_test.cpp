@@ -40,6 +40,7 @@ class HeldHost final : public ClusterHost {
     answer("{}");
   }
   std::map<std::uint64_t, std::string> replays() const override { return {{9, "a replay"}}; }
+  std::map<std::uint64_t, std::string> describe_sessions() const override { return described; }
   void cluster_changed() override { ++changes; }
 
   /// Removes a lost session from the storage.
@@ -53,6 +54,7 @@ class HeldHost final : public ClusterHost {
     end();
   }
 
+  std::map<std::uint64_t, std::string> described;
   std::atomic<int> taken = 0;
   std::atomic<int> lost = 0;
   std::atomic<int> changes = 0;
@@ -97,6 +99,7 @@ class TakenSessionsTest : public testing::Test {
     settings.servers = servers.urls();
     settings.node = "a";
     settings.public_url = "ws://a/ws";
+    settings.answer_time = std::chrono::minutes(5);  // longer than a test
     return settings;
   }
 
@@ -159,6 +162,83 @@ TEST_F(TakenSessionsTest, FindsReplaysOfOtherNodes) {
   const auto own = read_node("a", nodes.get("a")->value);
   ASSERT_TRUE(own);
   EXPECT_THAT(own->replays, testing::ElementsAre(testing::Pair(9, "a replay")));
+}
+
+// The entries of the other nodes do not list the replay yet.
+TEST_F(TakenSessionsTest, AsksOtherNodesForTheirReplays) {
+  node.start(host);
+  std::atomic<int> refreshed = 0;
+  const auto refresh = [&](int count) {
+    const int before = refreshed;
+    for (int i = 0; i < count; ++i) node.refresh_replays([&] { ++refreshed; });
+    return [&, expected = before + count] {
+      return wait_until([&] { return refreshed == expected; });
+    };
+  };
+  EXPECT_TRUE(refresh(1)()) << "there is no other node";
+  add_node({"c", "1", "ws://c/ws", "baseline", "1.0", 2, true});
+  ASSERT_TRUE(wait_until([&] { return node.urls().size() == 2; }));
+  EXPECT_TRUE(refresh(1)()) << "the node c has no connection";
+
+  NodeInfo b{"b", "1", "ws://b/ws", "baseline", "1.0", 2, true};
+  std::mutex mutex;
+  std::vector<std::string> asked;  // subjects of the answers
+  const auto questions =
+      connection.subscribe(question_subject("b"), [&](const NatsMessage& question) {
+        const std::lock_guard lock(mutex);
+        asked.push_back(question.reply_to);
+      });
+  connection.flush(std::chrono::seconds(5));
+  const auto answer_next = [&] {
+    ASSERT_TRUE(wait_until([&] {
+      const std::lock_guard lock(mutex);
+      return !asked.empty();
+    }));
+    const std::lock_guard lock(mutex);
+    connection.publish(asked.back(), write_node(b));
+    asked.pop_back();
+  };
+  add_node(b);
+  ASSERT_TRUE(wait_until([&] { return node.urls().size() == 3; }));
+  const auto first = refresh(1);
+  answer_next();
+  EXPECT_TRUE(first());
+  EXPECT_FALSE(node.find(7));
+  b.replays[7] = "the tide";
+  const auto others =
+      refresh(3);  // the first one is asked at once, and the others share a question
+  answer_next();
+  answer_next();
+  EXPECT_TRUE(others());
+  ASSERT_TRUE(node.find(7));
+  EXPECT_EQ(node.find(7)->owner, "b");
+  const std::lock_guard lock(mutex);
+  EXPECT_TRUE(asked.empty());
+}
+
+TEST_F(TakenSessionsTest, CollectsLongDescriptionsOfOtherNodes) {
+  TemporaryFolder other_folder;
+  Storage other_storage(other_folder.path().string(), {}, clock);
+  ClusterSettings other_settings = settings();
+  other_settings.node = "b";
+  ClusterNode other_node(other_settings, other_storage, clock, 2, "1.0");
+  HeldHost other_host(other_storage);
+  for (std::uint64_t number = 1; number <= 9; ++number) {  // more than a message may have
+    other_host.described[number] = std::string(200'000, static_cast<char>('0' + number));
+  }
+  host.described[10] = "of the asking node";
+  node.start(host);
+  other_node.start(other_host);
+  ASSERT_TRUE(wait_until([&] { return node.urls().size() == 2; }));
+  const auto collect = [&] {
+    std::promise<ClusterNode::Descriptions> done;
+    node.describe_sessions([&](const auto& all) { done.set_value(all); });
+    return done.get_future().get();
+  };
+  EXPECT_TRUE(collect() == other_host.described);
+  other_host.described.clear();
+  EXPECT_TRUE(collect().empty());
+  other_node.stop();
 }
 
 }  // namespace

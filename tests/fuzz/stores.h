@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "server/storage/checkpoint_store.h"
-#include "server/storage/saved_states.h"
+#include "server/storage/saved/saved_state_database.h"
 #include "server/storage/session_store.h"
 #include "server/storage/sqlite/storage_error.h"
 #include "tests/fuzz/target.h"
@@ -30,7 +30,7 @@ inline void check_reason(const StorageError& error) {
 inline void read_stores(const std::string& folder) {
   SessionStore sessions(folder + "/vat.db");
   CheckpointStore checkpoints(folder + "/checkpoints.db", std::size_t{1} << 20);
-  SavedStates states(folder + "/states.db");
+  SavedStateDatabase states(folder + "/states.db");
   for (const StoredSession& session : sessions.sessions()) {
     std::uint64_t last = 0;
     for (auto part = sessions.read(session.number, last); !part.empty();

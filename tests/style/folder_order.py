@@ -29,10 +29,10 @@ FOLDER_ORDER = (
     # the client library
     "protocol/client/connection", "protocol/client/methods", "protocol/client/exchange", "protocol/client",
     # files, sockets and measurements, without sessions
-    "server/support", "server/nats", "server/output/mesh", "server/output", "server/output/alembic", "server/storage/sqlite", "server/storage", "server/access", "server/transport",
+    "server/support", "server/nats", "server/output/mesh", "server/output", "server/output/alembic", "server/storage/sqlite", "server/storage/saved", "server/storage", "server/access", "server/transport",
     "server/operations", "server/messages", "server/http",
     # the parts of a session
-    "server/clients", "server/frames", "server/relay", "server/recording", "server/people", "server/history", "server/cluster", "server/session/ticks",
+    "server/clients", "server/frames", "server/relay", "server/recording", "server/people", "server/history", "server/cluster/saved", "server/cluster", "server/session/ticks",
     "server/session/core", "server/session", "server/replay", "server/directory",
     # the interface of clients
     "server/methods", "server/rpc",

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "server/session/core/session_core.h"
-#include "server/storage/saved_states.h"
+#include "server/storage/saved/saved_states.h"
 
 namespace vat {
 

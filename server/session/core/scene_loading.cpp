@@ -9,7 +9,7 @@
 #include "core/support/nearest_name.h"
 #include "server/operations/choose_device.h"
 #include "server/operations/memory_limit.h"
-#include "server/storage/saved_scenes.h"
+#include "server/storage/saved/saved_scenes.h"
 
 namespace vat {
 namespace {

@@ -2,6 +2,8 @@
 
 #include <filesystem>
 
+#include "server/storage/sqlite/storage_error.h"
+
 namespace vat {
 namespace {
 

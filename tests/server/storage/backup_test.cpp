@@ -3,7 +3,7 @@
 #include "server/storage/backup.h"
 
 #include "server/storage/checkpoint_store.h"
-#include "server/storage/saved_states.h"
+#include "server/storage/saved/saved_state_database.h"
 #include "server/storage/sqlite/main_database.h"
 #include "tests/server/fixture/host.h"
 #include "tests/support/temporary_folder.h"

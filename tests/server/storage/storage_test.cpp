@@ -6,7 +6,7 @@
 
 #include "server/storage/checkpoint_store.h"
 #include "server/storage/data_folder.h"
-#include "server/storage/saved_scenes.h"
+#include "server/storage/saved/saved_scene_database.h"
 #include "server/storage/storage.h"
 #include "tests/support/manual_clock.h"
 #include "tests/support/temporary_folder.h"
@@ -15,7 +15,7 @@ namespace vat::test::storage_test {
 namespace {
 
 TEST(StorageStates, GoWithTheSessionsThatAreGone) {
-  SavedStates states(MainDatabase::kInMemory);
+  SavedStateDatabase states(MainDatabase::kInMemory);
   const SavedStateLimits limits{10, 1000, 1000};
   for (const char* session : {"s1", "s2"}) {
     SavedState state;
@@ -30,10 +30,11 @@ TEST(StorageStates, GoWithTheSessionsThatAreGone) {
 
 TEST(StorageScenes, KeysOfAnotherSizeAreDamaged) {
   const auto main = std::make_shared<MainDatabase>(MainDatabase::kInMemory);
-  SavedScenes scenes(main);
+  SavedSceneDatabase scenes(main);
   SavedScene scene;
   scene.entry.name = "n";
-  EXPECT_FALSE(scenes.write(scene, {1, 1000, 1, 1000}));
+  const auto written = scenes.write(scene, {1, 1000, 1, 1000}, {});
+  EXPECT_EQ(std::get<SceneChange>(written), SceneChange::added);
   EXPECT_TRUE(scenes.find("n"));
   for (const char* key : {"zeroblob(0)", "zeroblob(31)", "zeroblob(33)"}) {
     main->database.prepare("UPDATE scenes SET key = " + std::string(key)).run();

@@ -1,4 +1,4 @@
-#include "server/storage/saved_states.h"
+#include "server/storage/saved/saved_state_database.h"
 
 #include <algorithm>
 #include <bit>
@@ -44,44 +44,32 @@ SavedStateEntry to_state_entry(const Statement& row) {
           static_cast<std::size_t>(row.count(6))};
 }
 
-std::size_t bytes_of(const SavedState& state) {
-  return state.fields.size() + state.state.size();
-}
-
 }  // namespace
 
-SavedStates::SavedStates(const std::string& path, Durability durability)
+SavedStateDatabase::SavedStateDatabase(const std::string& path, Durability durability)
     : database_(open_database(path, state_schema(), durability)) {}
 
 Schema state_schema() {
   return {kStateApplication, kStateSteps};
 }
 
-std::optional<LimitExcess> SavedStates::find_excess(const std::string& session,
-                                                    const SavedState& state,
-                                                    const SavedStateLimits& limits) {
-  // A replaced one does not count.
+SavedStateUse SavedStateDatabase::use_without(const std::string& session, const std::string& name) {
   Statement query = database_.prepare(
       "SELECT coalesce(sum(session = ?1), 0), coalesce(sum(iif(session = ?1, bytes, 0)), 0),"
       " coalesce(sum(bytes), 0) FROM states WHERE session <> ?1 OR name <> ?2");
-  query.bind(0, std::string_view(session)).bind(1, std::string_view(state.entry.name));
+  query.bind(0, std::string_view(session)).bind(1, std::string_view(name));
   if (!query.step()) return {};
-  const std::size_t bytes = bytes_of(state);
-  const LimitExcess limit[] = {{"states_per_session", limits.per_session},
-                               {"state_bytes_per_session", limits.bytes_per_session},
-                               {"state_bytes_in_all", limits.bytes_in_all}};
-  const std::size_t wanted[] = {query.count(0) + 1, query.count(1) + bytes, query.count(2) + bytes};
-  for (std::size_t i = 0; i < std::size(limit); ++i) {
-    if (wanted[i] > limit[i].maximum) return limit[i];
-  }
-  return {};
+  return {static_cast<std::size_t>(query.count(0)), static_cast<std::size_t>(query.count(1)),
+          static_cast<std::size_t>(query.count(2))};
 }
 
-std::optional<LimitExcess> SavedStates::write(const std::string& session, const SavedState& state,
-                                              const SavedStateLimits& limits) {
+std::optional<LimitExcess> SavedStateDatabase::write(const std::string& session,
+                                                     const SavedState& state,
+                                                     const SavedStateLimits& limits) {
   const std::lock_guard lock(mutex_);
-  if (auto excess = find_excess(session, state, limits)) return excess;
   const SavedStateEntry& entry = state.entry;
+  const SavedStateUse use = use_without(session, entry.name);
+  if (auto excess = find_excess(use, state.size(), limits)) return excess;
   database_.prepare(kWriteState)
       .bind(0, std::string_view(session))
       .bind(1, std::string_view(entry.name))
@@ -90,14 +78,14 @@ std::optional<LimitExcess> SavedStates::write(const std::string& session, const 
       .bind(4, entry.tick)
       .bind(5, entry.simulation_time)
       .bind(6, std::bit_cast<std::int64_t>(entry.hash))
-      .bind(7, std::uint64_t{bytes_of(state)})
+      .bind(7, std::uint64_t{state.size()})
       .bind(8, std::string_view(state.fields))
       .bind(9, std::span<const std::uint8_t>(state.state))
       .run();
   return {};
 }
 
-std::vector<SavedStateEntry> SavedStates::list(const std::string& session) {
+std::vector<SavedStateEntry> SavedStateDatabase::list(const std::string& session) {
   const std::lock_guard lock(mutex_);
   std::vector<SavedStateEntry> entries;
   Statement query = database_.prepare(std::string("SELECT ") + kColumns +
@@ -107,7 +95,8 @@ std::vector<SavedStateEntry> SavedStates::list(const std::string& session) {
   return entries;
 }
 
-std::optional<SavedState> SavedStates::find(const std::string& session, const std::string& name) {
+std::optional<SavedState> SavedStateDatabase::find(const std::string& session,
+                                                   const std::string& name) {
   const std::lock_guard lock(mutex_);
   Statement query = database_.prepare(std::string("SELECT ") + kColumns +
                                       ", fields, state FROM states WHERE session = ? AND name = ?");
@@ -118,7 +107,7 @@ std::optional<SavedState> SavedStates::find(const std::string& session, const st
       to_state_entry(query), std::string(query.text(7)), {state.begin(), state.end()}};
 }
 
-bool SavedStates::remove(const std::string& session, const std::string& name) {
+bool SavedStateDatabase::remove(const std::string& session, const std::string& name) {
   const std::lock_guard lock(mutex_);
   database_.prepare("DELETE FROM states WHERE session = ? AND name = ?")
       .bind(0, std::string_view(session))
@@ -127,7 +116,7 @@ bool SavedStates::remove(const std::string& session, const std::string& name) {
   return database_.number("SELECT changes()") > 0;
 }
 
-void SavedStates::remove_session(const std::string& session) {
+void SavedStateDatabase::remove_session(const std::string& session) {
   const std::lock_guard lock(mutex_);
   database_.prepare("DELETE FROM states WHERE session = ?")
       .bind(0, std::string_view(session))
@@ -136,7 +125,7 @@ void SavedStates::remove_session(const std::string& session) {
   }
 }
 
-void SavedStates::keep_only(const std::vector<std::string>& sessions) {
+void SavedStateDatabase::keep_only(const std::vector<std::string>& sessions) {
   std::vector<std::string> gone;
   {
     const std::lock_guard lock(mutex_);
@@ -149,7 +138,7 @@ void SavedStates::keep_only(const std::vector<std::string>& sessions) {
   for (const std::string& session : gone) remove_session(session);
 }
 
-std::size_t SavedStates::move_log(bool wait) {
+std::size_t SavedStateDatabase::move_log(bool wait) {
   const std::lock_guard lock(mutex_);
   return database_.move_log(wait);
 }
