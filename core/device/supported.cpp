@@ -7,6 +7,7 @@
 #include "core/damping/damping_solve.h"
 #include "core/device/liquid/device_step_control.h"
 #include "core/device/solid/solid_geometry.h"
+#include "core/numerics/step_limits.h"
 
 namespace vat {
 namespace {
@@ -130,6 +131,9 @@ void Missing::check_solids() {
   reject(scene_.numerics.integrator != IntegratorId::velocity_verlet &&
              std::ranges::any_of(scene_.bodies, has_motion),
          "/numerics/integrator", "must be velocity_verlet for driven bodies");
+  reject(scene_.numerics.integrator == IntegratorId::symplectic_euler && solves_damping(scene_) &&
+             must_solve_own_damping(model_, scene_.numerics.step),
+         "/numerics/step", "must resolve the damping of the bodies");
   reject(scene_.numerics.control != StepControl::fixed, "/numerics/control", "must be fixed");
   check_materials();
   check_laws();
