@@ -25,10 +25,6 @@ void set_liquid_motion(PairSources& sources, std::span<Vec3> motions, std::size_
   sources.set_motion(slot, motion_of(0, weighted));
 }
 
-PairMotion turned(const PairImage& image, const PairMotion& source) {
-  return motion_of(0, image.turn({source.vx, source.vy, source.vz}));
-}
-
 /// The maximum of G / rho over the liquids.
 Real greatest_mobility(const Model& model) {
   const auto mobility = by_material(
@@ -206,13 +202,10 @@ void PressureResponse::compress_to(std::span<Real> rate, Scale&& scale) {
   VAT_CHECK(rate.size() == order_.size());
   LiquidScratch& buffers = f_.work.of<LiquidScratch>();
   PairSources& sources = buffers.sources;
-  sources.set_other_motions(
-      f_.runner,
-      [&](std::size_t s) {
-        const Vec3 weighted = sources.weight(sources.first_solid() + s) * scratch_.solid_motion[s];
-        return motion_of(0, weighted);
-      },
-      turned);
+  sources.set_turned_motions(f_.runner, [&](std::size_t s) {
+    const Vec3 weighted = sources.weight(sources.first_solid() + s) * scratch_.solid_motion[s];
+    return motion_of(0, weighted);
+  });
   const std::span<const Real> factor = scratch_.rate_factor;
   const std::span<const VolumeSlope> slopes = buffers.volume_slopes;
   const std::span<const Vec3> motions = scratch_.liquid_motion;
@@ -323,14 +316,17 @@ void PressureResponse::find_diagonal(std::span<Real> diagonal) {
     const Real gradient = gradient_factor(model, liquid);
     return gradient * gradient;
   });
+  const auto mobility = by_material(
+      model, [](const LiquidModel& liquid) { return liquid.slope_scale / liquid.rest_density; });
+  const std::span<const VolumeSlope> slopes = f_.work.of<LiquidScratch>().volume_slopes;
   for_blocks(f_.runner, order_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       const Index i = order_[s];
+      const Index material = model.material[i];
       const Real volume = model.rest_volume[i];
-      const VolumeSlope& slope = f_.work.of<LiquidScratch>().volume_slopes[s];
-      diagonal[s] =
-          volume * factor[model.material[i]] *
-          (mobility_of_liquid(i) * slope.gradient.squaredNorm() + volume * scale * slope.squares);
+      const Real own = model.inverse_mass[i] > 0 ? mobility[material] : 0;
+      const Real square = slopes[s].gradient.squaredNorm();
+      diagonal[s] = volume * factor[material] * (own * square + volume * scale * slopes[s].squares);
     }
   });
 }

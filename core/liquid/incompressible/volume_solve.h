@@ -13,6 +13,7 @@ struct VolumeScratch {
   ResponseScratch response;
   Complementarity problem;
   std::vector<Real> relative_density;  ///< by slot
+  std::vector<SolveReport> excess;     ///< by block of particles
 };
 
 /// Stage that sets the pressure to the pressure at the end of the last step.

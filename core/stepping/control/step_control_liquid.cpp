@@ -28,6 +28,7 @@ Oscillation liquid_bound(const Model& model, std::size_t body, Real pressure) {
 }  // namespace
 
 Real travel_time(Real way, Real speed, Real acceleration) {
+  if (acceleration == 0) return way / speed;
   return 2 * way / (speed + std::sqrt(speed * speed + 4 * acceleration * way));
 }
 
