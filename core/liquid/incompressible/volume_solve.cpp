@@ -40,7 +40,10 @@ class VolumeSolve {
   int shift_places(bool mean_is_met);
 
   // Required by Complementarity.
-  void act(std::span<const Real> change) { response_.accelerate(change); }
+  Real act(std::span<const Real> change) {
+    response_.accelerate(change);
+    return dt_ * dt_ * response_.energy();
+  }
   void find_product(std::span<Real> product) {
     response_.compress(product, problem_.scale, -dt_ * dt_);
   }
