@@ -29,8 +29,9 @@ struct BodyDiagnostics {
 
 /// Cost and residual of one linear solve of an incompressible liquid (see volume_solve.h).
 struct SolveReport {
-  int iterations = 0;  ///< number of matrix-vector products
-  /// Mean over the liquid particles of the relative density change above the permitted value.
+  int iterations = 0;
+  /// Mean over the liquid particles of the relative density change above the permitted value. If
+  /// the solve expected that its last iteration was sufficient, the residuals are expected values.
   Real mean = 0;
   Real greatest = 0;  ///< maximum over the liquid particles of the same quantity
 };

@@ -116,7 +116,8 @@ bool Stepper::take_guarded_step(const StepInput& input, Real start, Real dt) {
 }
 
 Real Stepper::probe_start(const StepInput& input, Real start, Real dt) {
-  const ForceModel& f = input.force_model;
+  ForceModel f = input.force_model;
+  f.probe = &probe_;
   State& state = input.state;
   copy(state.now, f.runner, step_start_);
   state.forces_current = false;
@@ -161,8 +162,12 @@ bool Stepper::take_varied_step(const StepInput& input) {
   State& state = input.state;
   const Real nominal = input.numerics().step;
   const bool is_local = input.numerics().control == StepControl::local;
+  // A step with one evaluation does not show the rate.
+  const Integrator& integrator = integrator_of(input.numerics().integrator);
+  const bool is_probed =
+      !is_local && (integrator.take_step != nullptr || integrator.keeps_forces());
   ForceModel probed = input.force_model;
-  if (!is_local) probed.probe = &probe_;
+  if (is_probed) probed.probe = &probe_;
   const StepInput varied{probed, state, input.guard_bounds, input.step_bounds, input.report};
   for (Real left = nominal; left > 0;) {
     const Real start = input.time() + (nominal - left);
@@ -172,9 +177,11 @@ bool Stepper::take_varied_step(const StepInput& input) {
     const Real dt = state.history.step;
     const bool is_same = std::abs(dt - last) <= 1e-9 * dt;  // up to rounding
     if (is_local && !is_same) state.forces_current = false;
-    probe_.begin(state);
+    if (is_probed) probe_.begin(state);
     if (!take_guarded_step(varied, start, dt)) return false;
-    if (!is_local) state.history.observed_rate = probe_.observed_rate(input.model());
+    if (!is_local) {
+      state.history.observed_rate = is_probed ? probe_.observed_rate(input.model()) : 0;
+    }
     ++state.history.held;
     left = count == 1 ? 0 : left - dt;
   }

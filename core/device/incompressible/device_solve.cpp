@@ -40,6 +40,8 @@ void set_limits(const SolveLimits& limits, SolveParameters& p) {
   p.greatest = limits.greatest;
   p.start_mean = limits.start_mean;
   p.start_greatest = limits.start_greatest;
+  p.first_reduction = limits.first_reduction;
+  p.later_reduction = limits.later_reduction;
   p.negligible = Complementarity::kNegligible * limits.mean;
   p.most_iterations = limits.most_iterations;
 }
@@ -76,10 +78,10 @@ void DeviceSolve::iterate(const LiquidParameters& p, const SolveParameters& solv
     program_.run("find_slope", kOne, groups_, is_restart, partial, progress);
   }
   program_.run("accelerate", slots_, p, solve, progress, s.cells.begins, s.sorted_place,
-               s.neighbour_counts, s.neighbours, charge_, solve_motion);
-  program_.run("compress", slots_, p, solve, progress, s.cells.begins, s.sorted_place,
-               s.neighbour_counts, s.neighbours, solve_motion, direction_, product_, partial);
+               s.neighbour_counts, s.neighbours, charge_, solve_motion, partial);
   program_.run("find_length", kOne, solve, groups_, partial, progress);
+  program_.run("compress", slots_, p, solve, progress, s.cells.begins, s.sorted_place,
+               s.neighbour_counts, s.neighbours, solve_motion, product_);
   program_.run("take_step", slots_, solve, progress, s.sorted_place, squares, direction_, product_,
                solve_motion, x, excess, gradient, whole, partial);
   program_.run("end_iteration", kOne, solve, groups_, std::int32_t{0}, partial, progress);

@@ -26,6 +26,8 @@ struct SolveParameters {
   double greatest;             ///< limit of the greatest residual
   double start_mean;           ///< SolveLimits::start_mean
   double start_greatest;
+  double first_reduction;  ///< SolveLimits::first_reduction
+  double later_reduction;
   double negligible;   ///< x counts as 0 if x diagonal / scale is at most this
   double least_bound;  ///< see Complementarity
   double greatest_bound;
@@ -53,7 +55,7 @@ struct SolveProgress {
   std::int32_t iterations;
   std::int32_t is_open;
   std::int32_t restarts;
-  std::int32_t padding;
+  std::int32_t is_last;
 };
 
 /// Returns the parameters that do not depend on the step, for a model with one liquid.

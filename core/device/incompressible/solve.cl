@@ -17,6 +17,8 @@ typedef struct {
   double greatest;
   double start_mean;
   double start_greatest;
+  double first_reduction;
+  double later_reduction;
   double negligible;
   double least_bound;
   double greatest_bound;
@@ -30,7 +32,8 @@ typedef struct {
   int slots;
 } Solve;
 
-// `share`, `slope` and `length` belong to the current iteration.
+// `share`, `slope`, `length` and `is_last` belong to the current iteration. `is_last` states whether
+// its expected residuals are within the limits.
 typedef struct {
   double mean;
   double greatest;
@@ -44,7 +47,7 @@ typedef struct {
   int iterations;
   int is_open;
   int restarts;
-  int padding;
+  int is_last;
 } Progress;
 
 // D of the motions, divided by rate_factor.
@@ -195,56 +198,68 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_slope(
   progress->restarts = !is_restart && !(total.x > 0) && progress->share > 0;
 }
 
-// Sets the motion to the accelerations by the charges.
-kernel void accelerate(const Parameters p, const Solve solve, global const Progress* progress,
-                       global const int* begins, global const int4* sorted_place,
-                       global const int* counts, global const uint* lists,
-                       global const float* charge, global float4* solve_motion) {
-  const int slot = get_global_id(0);
-  if (slot >= solve.slots || !progress->is_open) return;
+// The accelerations by the charges, divided by -acceleration_factor.
+float3 push_of(const Parameters* p, int slot, global const int* begins,
+               global const int4* sorted_place, global const int* counts,
+               global const uint* lists, global const float* charge) {
   const int4 own = sorted_place[slot];
-  if (is_solid(own)) {
-    solve_motion[slot] = 0;
-    return;
-  }
   const int n[3] = {own.x, own.y, own.z};
   const float mine = charge[slot];
   float3 sum = 0;
-  FOR_EACH_NEIGHBOUR(&p, slot, n, begins, counts, lists, {
+  FOR_EACH_NEIGHBOUR(p, slot, n, begins, counts, lists, {
     const int4 other = sorted_place[j];
-    const float3 x = way_from(&p, code, n, other);
+    const float3 x = way_from(p, code, n, other);
     const float square = square_of(x);
     if (!(square < 1)) continue;
     const float both = is_solid(other) ? 2 * mine : mine + charge[j];
     sum += both * (weight_of(other) * kernel_slope(sqrt(square))) * x;
   })
-  solve_motion[slot] = (float4)(-(float)solve.acceleration_factor * sum, 0);
+  return sum;
 }
 
-// Computes the product of the matrix and the direction from the accelerations.
-kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void compress(
+// Sets the motion to the accelerations by the charges. Sums the curvature along the direction, see
+// PressureResponse::energy().
+kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void accelerate(
     const Parameters p, const Solve solve, global const Progress* progress,
     global const int* begins, global const int4* sorted_place, global const int* counts,
-    global const uint* lists, global const float4* solve_motion, global const double* direction,
-    global double* product, global double4* partial) {
+    global const uint* lists, global const float* charge, global float4* solve_motion,
+    global double4* partial) {
   local double4 sums[GROUP];
   if (!progress->is_open) return;
   const int slot = get_global_id(0);
   double4 own = 0;
   if (slot < solve.slots) {
-    double a = 0;
+    float3 a = 0;
     if (!is_solid(sorted_place[slot])) {
-      const float rate = rate_of(&p, slot, begins, sorted_place, counts, lists, solve_motion);
-      const double scale = solve.volume * (double)weight_of(sorted_place[slot]);
-      a = -solve.dt * solve.dt * solve.rate_factor * scale * (double)rate;
+      a = -(float)solve.acceleration_factor *
+          push_of(&p, slot, begins, sorted_place, counts, lists, charge);
+      const double x = a.x;
+      const double y = a.y;
+      const double z = a.z;
+      const double inertia = solve.volume * (double)weight_of(sorted_place[slot]) *
+                             solve.rate_factor / solve.acceleration_factor;
+      own.x = solve.dt * solve.dt * inertia * (x * x + y * y + z * z);
     }
-    product[slot] = a;
-    own.x = direction[slot] * a;
+    solve_motion[slot] = (float4)(a, 0);
   }
   write_partial(sums, own, partial);
 }
 
-// Chooses the length of the step to the minimum along the direction.
+// Computes the product of the matrix and the direction from the accelerations.
+kernel void compress(const Parameters p, const Solve solve, global const Progress* progress,
+                     global const int* begins, global const int4* sorted_place,
+                     global const int* counts, global const uint* lists,
+                     global const float4* solve_motion, global double* product) {
+  const int slot = get_global_id(0);
+  if (slot >= solve.slots || !progress->is_open || progress->is_last) return;
+  if (is_solid(sorted_place[slot])) return;
+  const float rate = rate_of(&p, slot, begins, sorted_place, counts, lists, solve_motion);
+  const double scale = solve.volume * (double)weight_of(sorted_place[slot]);
+  product[slot] = -solve.dt * solve.dt * solve.rate_factor * scale * (double)rate;
+}
+
+// Chooses the length of the step to the minimum along the direction, and decides whether the
+// iteration is the last.
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_length(
     const Solve solve, const int groups, global const double4* partial,
     global Progress* progress) {
@@ -259,6 +274,10 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_length(
   progress->longest_step = next < solve.least_bound      ? solve.least_bound
                            : next > solve.greatest_bound ? solve.greatest_bound
                                                          : next;
+  const double reduction =
+      progress->iterations == 0 ? solve.first_reduction : solve.later_reduction;
+  progress->is_last = progress->mean * reduction <= solve.mean &&
+                      progress->greatest * reduction <= solve.greatest;
 }
 
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void take_step(
@@ -277,7 +296,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void take_step(
     if (length > 0) {
       next += length * direction[slot];
       if (next < 0) next = 0;  // by rounding
-      e -= length * product[slot];
+      if (!progress->is_last) e -= length * product[slot];
       whole[slot] += (float)length * solve_motion[slot];
     }
     const float weight = weight_of(sorted_place[slot]);
@@ -293,7 +312,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void take_step(
 }
 
 // Ends an iteration, or begins a solve if `is_start` is set, and decides whether another iteration
-// follows.
+// follows. The residuals of the last iteration are the expected ones.
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void end_iteration(
     const Solve solve, const int groups, const int is_start, global const double4* partial,
     global Progress* progress) {
@@ -306,13 +325,17 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void end_iteration(
   const double mean = total.x / (double)solve.count;
   progress->share = is_start || !(last > 0) ? 0 : greater(0, (total.z - total.y) / last);
   progress->square = total.z;
-  progress->mean = mean;
-  progress->greatest = total.w;
+  const double reduction =
+      progress->iterations == 0 ? solve.first_reduction : solve.later_reduction;
+  const bool is_last = !is_start && progress->is_last;
+  progress->mean = is_last ? progress->mean * reduction : mean;
+  progress->greatest = is_last ? progress->greatest * reduction : total.w;
   if (is_start) progress->longest_step = solve.least_bound;
   progress->iterations = is_start ? 0 : progress->iterations + 1;
   const bool is_far = !isnan(mean) && (mean > solve.mean || total.w > solve.greatest);
   const bool must_begin = is_start && (mean > solve.start_mean || total.w > solve.start_greatest);
-  progress->is_open = (is_far || must_begin) && progress->iterations < solve.most_iterations;
+  progress->is_open =
+      !is_last && (is_far || must_begin) && progress->iterations < solve.most_iterations;
 }
 
 // Sets the excess of the density to the sums of find_density.

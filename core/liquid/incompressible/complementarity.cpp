@@ -44,12 +44,22 @@ Real Complementarity::follow(Real share, TaskRunner* runner) {
   });
 }
 
-Real Complementarity::length_of_step(TaskRunner* runner, Real slope) {
-  const Real curvature = sum(runner, [&](std::size_t i) { return direction_[i] * product_[i]; });
+Real Complementarity::length_of_step(Real slope, Real curvature) {
   const Real optimal = curvature > 0 ? slope / curvature : 0;
   const Real length = std::min(optimal, longest_step_);
   longest_step_ = std::clamp(kBoundOfOptimal * optimal, kLeastBound, kGreatestBound);
   return length;
+}
+
+void Complementarity::take_last_step(Real length, Real reduction, TaskRunner* runner,
+                                     SolveReport& report) {
+  for_blocks(runner, x.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      x[i] = std::max(Real{0}, x[i] + length * direction_[i]);  // below 0 by rounding only
+    }
+  });
+  report.mean *= reduction;
+  report.greatest *= reduction;
 }
 
 void Complementarity::take_step(Real length, TaskRunner* runner, SolveReport& report) {

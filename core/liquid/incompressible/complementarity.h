@@ -21,6 +21,11 @@ struct SolveLimits {
   /// Initial mean and greatest residual above which a solve makes at least one iteration.
   Real start_mean = std::numeric_limits<Real>::infinity();
   Real start_greatest = std::numeric_limits<Real>::infinity();
+  /// Expected ratios of the residuals after and before the first iteration and a later one. If the
+  /// expected residuals are within the limits, the iteration is the last. Its residuals are not
+  /// computed. With the default, all residuals are computed.
+  Real first_reduction = std::numeric_limits<Real>::infinity();
+  Real later_reduction = std::numeric_limits<Real>::infinity();
 };
 
 /// A linear complementarity problem with a symmetric, positive semi-definite matrix A: find x >= 0
@@ -29,9 +34,8 @@ struct SolveLimits {
 /// The method is the conjugate gradient method with the diagonal as preconditioner (E. Polak, G.
 /// Ribiere, Rev. Franc. Inform. Rech. Oper. 16 (1969) 35). The gradient is projected onto x >= 0,
 /// and each direction is shortened for the unknowns close to 0, so that no step makes x negative
-/// (as in Z. Dostal, J. Schoeberl, Comput. Optim. Appl. 30 (2005) 23). No product is needed to
-/// verify the result, because the excess is that of the final x. The result is bitwise independent
-/// of the number of threads.
+/// (as in Z. Dostal, J. Schoeberl, Comput. Optim. Appl. 30 (2005) 23). The result is bitwise
+/// independent of the number of threads.
 class Complementarity {
  public:
   // Bounds of longest_step_. Optimal steps of the solves of liquids are 0.5 to 2.3 long, and longer
@@ -43,16 +47,16 @@ class Complementarity {
   static constexpr Real kNegligible = 0.1;
 
   std::vector<Real> x;
-  std::vector<Real> excess;    ///< e(x)
+  std::vector<Real> excess;    ///< e(x); outdated after an iteration without computed residuals
   std::vector<Real> diagonal;  ///< diagonal of A, or an upper bound; above 0
   std::vector<Real> scale;     ///< scale of the residuals; above 0
 
   void resize(std::size_t count);
 
-  /// Solves the problem, starting from the present `x` >= 0 and its `excess`. `system.act(d)`
-  /// followed by `system.find_product(product)` must compute product = A d. `system.add(share)`
-  /// must add `share` times the effect of d to the total effect. The final x is not negative, and
-  /// the total effect is that of the change of x.
+  /// Solves the problem, starting from the present `x` >= 0 and its `excess`. `system.act(d)` must
+  /// return d.A d. A following `system.find_product(product)` must compute product = A d.
+  /// `system.add(share)` must add `share` times the effect of d to the total effect. The final x is
+  /// not negative, and the total effect is that of the change of x.
   template <class System>
   SolveReport solve(const SolveLimits& limits, TaskRunner* runner, System& system) {
     VAT_CHECK(excess.size() == x.size() && diagonal.size() == x.size() && scale.size() == x.size());
@@ -69,11 +73,17 @@ class Complementarity {
     while ((is_open() || (must_begin && report.iterations == 0)) &&
            report.iterations < limits.most_iterations) {
       const Real slope = choose_direction(report.iterations == 0, runner);
-      system.act(direction_);
-      system.find_product(product_);
-      ++report.iterations;
-      const Real length = length_of_step(runner, slope);
+      const Real length = length_of_step(slope, system.act(direction_));
       system.add(length);
+      const Real reduction =
+          report.iterations == 0 ? limits.first_reduction : limits.later_reduction;
+      ++report.iterations;
+      if (report.mean * reduction <= limits.mean &&
+          report.greatest * reduction <= limits.greatest) {
+        take_last_step(length, reduction, runner, report);
+        break;
+      }
+      system.find_product(product_);
       take_step(length, runner, report);
     }
     return report;
@@ -95,9 +105,11 @@ class Complementarity {
   Real follow(Real share, TaskRunner* runner);
   /// Returns the step length to the minimum of x.A x / 2 - e(0).x along the direction, at most
   /// longest_step_, and sets longest_step_ for the next iteration.
-  Real length_of_step(TaskRunner* runner, Real slope);
+  Real length_of_step(Real slope, Real curvature);
   /// Moves x by `length` times the direction, and computes the gradient and the residuals.
   void take_step(Real length, TaskRunner* runner, SolveReport& report);
+  /// Moves x by `length` times the direction. Sets the residuals to the expected values.
+  void take_last_step(Real length, Real reduction, TaskRunner* runner, SolveReport& report);
   template <class F>
   Real sum(TaskRunner* runner, F&& f);
 

@@ -25,10 +25,6 @@ void set_liquid_motion(PairSources& sources, std::span<Vec3> motions, std::size_
   sources.set_motion(slot, motion_of(0, weighted));
 }
 
-PairMotion turned(const PairImage& image, const PairMotion& source) {
-  return motion_of(0, image.turn({source.vx, source.vy, source.vz}));
-}
-
 /// The maximum of G / rho over the liquids.
 Real greatest_mobility(const Model& model) {
   const auto mobility = by_material(
@@ -72,12 +68,18 @@ void PressureResponse::set_factors() {
   const auto rate =
       by_material(model, [&](const LiquidModel& liquid) { return gradient_factor(model, liquid); });
   scratch_.acceleration_factor.resize(order_.size());
+  const auto density = by_material(
+      model, [](const LiquidModel& liquid) { return liquid.rest_density / liquid.slope_scale; });
   scratch_.rate_factor.resize(order_.size());
+  scratch_.inertia.resize(order_.size());
+  scratch_.partial.resize(block_count(order_.size()));
   for_blocks(f_.runner, order_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       const Index i = order_[s];
       const Index material = model.material[i];
-      scratch_.acceleration_factor[s] = model.inverse_mass[i] > 0 ? acceleration[material] : 0;
+      const bool moves = model.inverse_mass[i] > 0;
+      scratch_.acceleration_factor[s] = moves ? acceleration[material] : 0;
+      scratch_.inertia[s] = moves ? model.rest_volume[i] * density[material] : 0;
       scratch_.rate_factor[s] = rate[material];
     }
   });
@@ -95,6 +97,7 @@ void PressureResponse::charge(std::span<const Real> pressure) {
 }
 
 void PressureResponse::accelerate(std::span<const Real> pressure) {
+  store_whole();
   charge(pressure);
   VAT_CHECK(pressure.size() == order_.size());
   accelerate_liquid(pressure);
@@ -179,7 +182,26 @@ Vec3 PressureResponse::solid_acceleration(Index particle) const {
          scratch_.rigid_turning[b].cross(offset);
 }
 
+Real PressureResponse::energy() {
+  for_blocks(f_.runner, order_.size(), [&](std::size_t begin, std::size_t end) {
+    Real sum = 0;
+    for (std::size_t s = begin; s < end; ++s) {
+      sum += scratch_.inertia[s] * scratch_.liquid_motion[s].squaredNorm();
+    }
+    scratch_.partial[begin / kBlockSize] = sum;
+  });
+  Real total = 0;
+  for (const Real part : scratch_.partial) total += part;
+  if (!solids_move_) return total;
+  const Real scale = f_.model.liquids[f_.model.material[0]]->slope_scale;
+  for (std::size_t s = 0; s < solids_.size(); ++s) {
+    total += scratch_.solid_force[solids_[s]].dot(scratch_.solid_motion[s]) / scale;
+  }
+  return total;
+}
+
 void PressureResponse::see_velocities(const Vec3& wall_velocity) {
+  store_whole();
   PairSources& sources = f_.work.of<LiquidScratch>().sources;
   for_blocks(f_.runner, order_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
@@ -206,13 +228,10 @@ void PressureResponse::compress_to(std::span<Real> rate, Scale&& scale) {
   VAT_CHECK(rate.size() == order_.size());
   LiquidScratch& buffers = f_.work.of<LiquidScratch>();
   PairSources& sources = buffers.sources;
-  sources.set_other_motions(
-      f_.runner,
-      [&](std::size_t s) {
-        const Vec3 weighted = sources.weight(sources.first_solid() + s) * scratch_.solid_motion[s];
-        return motion_of(0, weighted);
-      },
-      turned);
+  sources.set_turned_motions(f_.runner, [&](std::size_t s) {
+    const Vec3 weighted = sources.weight(sources.first_solid() + s) * scratch_.solid_motion[s];
+    return motion_of(0, weighted);
+  });
   const std::span<const Real> factor = scratch_.rate_factor;
   const std::span<const VolumeSlope> slopes = buffers.volume_slopes;
   const std::span<const Vec3> motions = scratch_.liquid_motion;
@@ -225,49 +244,57 @@ void PressureResponse::compress_to(std::span<Real> rate, Scale&& scale) {
 }
 
 void PressureResponse::add(Real share) {
-  const bool is_first = !has_whole_;
-  const auto add_to = [&](std::vector<Vec3>& whole, const std::vector<Vec3>& part) {
-    VAT_CHECK(is_first || whole.size() == part.size());
+  VAT_CHECK(!has_share_);
+  share_ = share;
+  has_share_ = true;
+}
+
+void PressureResponse::store_whole() {
+  if (!has_share_) return;
+  const auto store = [&](std::vector<Vec3>& whole, const std::vector<Vec3>& part) {
+    VAT_CHECK(!has_whole_ || whole.size() == part.size());
     whole.resize(part.size());
     for_blocks(f_.runner, part.size(), [&](std::size_t begin, std::size_t end) {
-      for (std::size_t k = begin; k < end; ++k) {
-        whole[k] = is_first ? Vec3(share * part[k]) : Vec3(whole[k] + share * part[k]);
-      }
+      for (std::size_t k = begin; k < end; ++k) whole[k] = total(whole, part, k);
     });
   };
-  add_to(scratch_.liquid_whole, scratch_.liquid_motion);
+  store(scratch_.liquid_whole, scratch_.liquid_motion);
+  if (solids_move_) {
+    store(scratch_.solid_force_whole, scratch_.solid_force);
+    store(scratch_.rigid_force_whole, scratch_.rigid_force);
+    store(scratch_.rigid_torque_whole, scratch_.rigid_torque);
+  }
   has_whole_ = true;
-  if (!solids_move_) return;
-  add_to(scratch_.solid_force_whole, scratch_.solid_force);
-  add_to(scratch_.rigid_force_whole, scratch_.rigid_force);
-  add_to(scratch_.rigid_torque_whole, scratch_.rigid_torque);
+  has_share_ = false;
 }
 
 void PressureResponse::kick(Real dt) {
-  if (!has_whole_) return;
+  if (!has_share_) return;
   const Model& model = f_.model;
   for_blocks(f_.runner, order_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
-      at_.velocity[order_[s]] += dt * scratch_.liquid_whole[s];
+      at_.velocity[order_[s]] += dt * total(scratch_.liquid_whole, scratch_.liquid_motion, s);
     }
   });
   if (!solids_move_) return;
   for (Index i = model.liquid_count; i < model.free_count; ++i) {
     at_.velocity[i] +=
-        (dt * model.inverse_mass[i]) * scratch_.solid_force_whole[i - model.liquid_count];
+        (dt * model.inverse_mass[i]) *
+        total(scratch_.solid_force_whole, scratch_.solid_force, i - model.liquid_count);
   }
   for (std::size_t b = 0; b < model.rigid_bodies.size(); ++b) {
-    at_.rigid[b].momentum += dt * scratch_.rigid_force_whole[b];
-    at_.rigid[b].angular_momentum += dt * scratch_.rigid_torque_whole[b];
+    at_.rigid[b].momentum += dt * total(scratch_.rigid_force_whole, scratch_.rigid_force, b);
+    at_.rigid[b].angular_momentum +=
+        dt * total(scratch_.rigid_torque_whole, scratch_.rigid_torque, b);
     pose_rigid_body(model, model.rigid_bodies[b], at_.rigid[b], at_);
   }
 }
 
 void PressureResponse::shift(Real share) {
-  if (!has_whole_) return;
+  if (!has_share_) return;
   for_blocks(f_.runner, order_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
-      at_.position[order_[s]] += share * scratch_.liquid_whole[s];
+      at_.position[order_[s]] += share * total(scratch_.liquid_whole, scratch_.liquid_motion, s);
     }
   });
 }
@@ -323,14 +350,17 @@ void PressureResponse::find_diagonal(std::span<Real> diagonal) {
     const Real gradient = gradient_factor(model, liquid);
     return gradient * gradient;
   });
+  const auto mobility = by_material(
+      model, [](const LiquidModel& liquid) { return liquid.slope_scale / liquid.rest_density; });
+  const std::span<const VolumeSlope> slopes = f_.work.of<LiquidScratch>().volume_slopes;
   for_blocks(f_.runner, order_.size(), [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       const Index i = order_[s];
+      const Index material = model.material[i];
       const Real volume = model.rest_volume[i];
-      const VolumeSlope& slope = f_.work.of<LiquidScratch>().volume_slopes[s];
-      diagonal[s] =
-          volume * factor[model.material[i]] *
-          (mobility_of_liquid(i) * slope.gradient.squaredNorm() + volume * scale * slope.squares);
+      const Real own = model.inverse_mass[i] > 0 ? mobility[material] : 0;
+      const Real square = slopes[s].gradient.squaredNorm();
+      diagonal[s] = volume * factor[material] * (own * square + volume * scale * slopes[s].squares);
     }
   });
 }

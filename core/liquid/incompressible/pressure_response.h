@@ -12,6 +12,8 @@ namespace vat {
 struct ResponseScratch {
   std::vector<Real> acceleration_factor;  ///< by liquid slot: slope_factor() / rho, or 0 if fixed
   std::vector<Real> rate_factor;          ///< by liquid slot: slope_factor() / G
+  std::vector<Real> inertia;              ///< by liquid slot: m / G, or 0 if fixed [kg]
+  std::vector<Real> partial;              ///< by block of slots
   std::vector<Vec3> liquid_motion;  ///< by liquid slot: velocity [m/s] or acceleration [m/s^2]
   std::vector<Vec3> liquid_whole;   ///< by liquid slot: total acceleration [m/s^2]
   std::vector<Vec3> solid_motion;   ///< by solid slot: velocity [m/s] or acceleration [m/s^2]
@@ -53,6 +55,10 @@ class PressureResponse {
   void accelerate(std::span<const Real> pressure);
   /// Sets the motion to the velocities relative to walls with the velocity `wall_velocity` [m/s].
   void see_velocities(const Vec3& wall_velocity);
+  /// Returns the sum of -p V D of the motion, if the motion is that of accelerate(p). The matrix is
+  /// D M^-1 D^T up to factors. The sum is therefore that of F.a / G, for the forces F and
+  /// accelerations a.
+  Real energy();
 
   /// Sets `rate` to D of the motion, by liquid slot.
   void compress(std::span<Real> rate);
@@ -62,7 +68,7 @@ class PressureResponse {
   void find_diagonal(std::span<Real> diagonal);
 
   /// Adds `share` times the present accelerations to the total accelerations, which are zero at
-  /// first.
+  /// first. May be called once for each accelerate().
   void add(Real share);
 
   /// Adds `dt` times the total accelerations to the velocities.
@@ -73,6 +79,13 @@ class PressureResponse {
  private:
   /// Sets the factors of the liquid slots. The sums would otherwise collect them in each iteration.
   void set_factors();
+  /// Adds the accelerations of the last add() to the stored total.
+  void store_whole();
+  /// Returns the total of `whole` and the share of `part` of the last add().
+  Vec3 total(const std::vector<Vec3>& whole, const std::vector<Vec3>& part, std::size_t n) const {
+    const Vec3 last = share_ * part[n];
+    return has_whole_ ? Vec3(whole[n] + last) : last;
+  }
   /// Doubles the weights of solids, because solids count as mirror images.
   void weigh_solids();
   void charge(std::span<const Real> pressure);
@@ -98,7 +111,9 @@ class PressureResponse {
   const bool has_solids_;
   const bool solids_move_;
   const bool has_several_liquids_;
-  bool has_whole_ = false;
+  bool has_whole_ = false;  ///< the total includes the stored total
+  bool has_share_ = false;  ///< the total includes share_ times the present accelerations
+  Real share_ = 0;
   const Real greatest_mobility_;  ///< maximum of 1/m over the liquids [1/kg]
 };
 

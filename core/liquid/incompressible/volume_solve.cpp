@@ -40,7 +40,10 @@ class VolumeSolve {
   int shift_places(bool mean_is_met);
 
   // Required by Complementarity.
-  void act(std::span<const Real> change) { response_.accelerate(change); }
+  Real act(std::span<const Real> change) {
+    response_.accelerate(change);
+    return dt_ * dt_ * response_.energy();
+  }
   void find_product(std::span<Real> product) {
     response_.compress(product, problem_.scale, -dt_ * dt_);
   }
@@ -72,10 +75,10 @@ void VolumeSolve::set_up() {
   problem_.resize(order_.size());
   s_.relative_density.resize(order_.size());
   response_.find_diagonal(problem_.diagonal);
+  const std::span<const Real> density = f_.work.of<LiquidScratch>().density;
   each_slot([&](std::size_t s) {
     const Index i = order_[s];
-    s_.relative_density[s] =
-        f_.work.of<LiquidScratch>().density[i] / liquid_of(f_.model, i).rest_density;
+    s_.relative_density[s] = density[i] / liquid_of(f_.model, i).rest_density;
     problem_.scale[s] = f_.model.rest_volume[i];
     Real& diagonal = problem_.diagonal[s];
     diagonal = diagonal > 0 ? dt_ * dt_ * diagonal : kAlone;
@@ -131,14 +134,24 @@ void find_density(StepContext& c) {
 
 /// Measures the densities above the rest density.
 void measure_excess(const StepContext& c, SolveReport& report) {
+  const std::span<const Real> density = c.work.of<LiquidScratch>().density;
+  std::vector<SolveReport>& parts = c.work.of<VolumeScratch>().excess;
+  parts.resize(block_count(c.model.liquid_count));
+  for_blocks(c.runner, c.model.liquid_count, [&](std::size_t begin, std::size_t end) {
+    SolveReport part;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Real excess = density[i] / liquid_of(c.model, i).rest_density - 1;
+      // The guard detects a NaN.
+      part.mean += std::max(Real{0}, excess);
+      part.greatest = std::max(part.greatest, excess);
+    }
+    parts[begin / kBlockSize] = part;
+  });
   report.mean = 0;
   report.greatest = 0;
-  for (Index i = 0; i < c.model.liquid_count; ++i) {
-    const Real excess =
-        c.work.of<LiquidScratch>().density[i] / liquid_of(c.model, i).rest_density - 1;
-    // The guard detects a NaN.
-    report.mean += std::max(Real{0}, excess) / c.model.liquid_count;
-    report.greatest = std::max(report.greatest, excess);
+  for (const SolveReport& part : parts) {
+    report.mean += part.mean / c.model.liquid_count;
+    report.greatest = std::max(report.greatest, part.greatest);
   }
 }
 

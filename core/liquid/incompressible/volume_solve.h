@@ -13,6 +13,7 @@ struct VolumeScratch {
   ResponseScratch response;
   Complementarity problem;
   std::vector<Real> relative_density;  ///< by slot
+  std::vector<SolveReport> excess;     ///< by block of particles
 };
 
 /// Stage that sets the pressure to the pressure at the end of the last step.
@@ -28,12 +29,11 @@ void recall_pressure(StepContext& context);
 ///
 /// Let s = rho / rho_0, and let D and F be the rate and the force of PressureResponse. Impulses dt
 /// F(p) with p >= 0 change the velocities of liquid and solids so that dt D_i(v) <= r_i. For s_i <
-/// 1, the bound is r_i = (1 - s_i) / 2, which closes half of a gap. For s_i >= 1, let e_i be the
-/// excess of s_i - 1 over a fifth of the density tolerance. If e_i > 0, the bound is r_i =
+/// 1, the bound is r_i = (1 - s_i) / 4, which closes a quarter of a gap. For s_i >= 1, let e_i be
+/// the excess of s_i - 1 over a tenth of the density tolerance. If e_i > 0, the bound is r_i =
 /// -min(e_i, density tolerance, 0.0015). This bound removes excess density before positions must be
-/// corrected, at a rate limited by the tolerance. In liquid at rest, s fluctuates by less than a
-/// fifth of the density tolerance. A removal of these fluctuations would cause noise in the
-/// pressure.
+/// corrected, at a rate limited by the tolerance. A removal of all excess would cause noise in the
+/// pressure of liquid at rest.
 ///
 /// The forces already include the impulses of the last step. The solve therefore computes only the
 /// change of the impulses. The divergence tolerance is at most a quarter of the density tolerance,

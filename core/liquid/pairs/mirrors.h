@@ -1,7 +1,7 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
+#include <span>
 
 #include "core/laws/vat_motion.h"
 #include "core/model/model.h"
@@ -21,46 +21,51 @@ struct Mirror {
   Vec3 place(const Vec3& x) const { return twice_plane + turn(x); }
 };
 
+/// Calls f(walls) for each set of one to three walls whose images of `p` may be within `radius` [m]
+/// of `p`. Each wall of a set is across a different axis. `walls` is a span of wall numbers.
+template <class F>
+void for_each_wall_set(const Model& model, const VatMotion& motion, const Vec3& p, Real radius,
+                       F&& f) {
+  std::array<int, kWallCount> near;
+  std::array<Real, kWallCount> square;  // squared distance
+  std::size_t count = 0;
+  for (const int wall : model.walls) {
+    const Real distance = wall_distance(*model.scene.vat, motion, wall, p);
+    if (distance >= radius) continue;
+    near[count] = wall;
+    square[count++] = distance > 0 ? distance * distance : 0;
+  }
+  const Real reach2 = radius * radius;
+  const auto call = [&](auto... walls) { f(std::span<const int>(std::array{walls...})); };
+  for (std::size_t a = 0; a < count; ++a) {
+    call(near[a]);
+    for (std::size_t b = 0; b < a; ++b) {
+      const Real of_edge = square[a] + square[b];
+      if (near[b] / 2 == near[a] / 2 || of_edge >= reach2) continue;
+      call(near[a], near[b]);
+      for (std::size_t c = 0; c < b; ++c) {
+        const bool is_new = near[c] / 2 != near[a] / 2 && near[c] / 2 != near[b] / 2;
+        if (is_new && of_edge + square[c] < reach2) call(near[a], near[b], near[c]);
+      }
+    }
+  }
+}
+
 /// Calls f(mirror) for each reflection whose images may be within `radius` [m] of `p`.
 template <class F>
 void for_each_mirror(const Model& model, const VatMotion& motion, const Vec3& p, Real radius,
                      F&& f) {
-  struct Near {
-    int axis;
-    Real plane;
-    Real distance;
-  };
-  std::array<Near, kWallCount> near;
-  std::size_t count = 0;
   const Vat& vat = *model.scene.vat;
-  for (const int wall : model.walls) {
-    const Real distance = wall_distance(vat, motion, wall, p);
-    if (distance >= radius) continue;
-    const int axis = wall / 2;
-    near[count++] = {axis, (wall % 2 == 0 ? vat.min : vat.max)[axis] + motion.offset[axis],
-                     std::max(Real{0}, distance)};
-  }
-  const auto reflect = [&](Mirror mirror, const Near& wall) {
-    mirror.axes[static_cast<std::size_t>(wall.axis)] = true;
-    mirror.twice_plane[wall.axis] = 2 * wall.plane;
-    return mirror;
-  };
-  for (std::size_t a = 0; a < count; ++a) {
-    const Mirror face = reflect({}, near[a]);
-    f(face);
-    const Real a2 = near[a].distance * near[a].distance;
-    for (std::size_t b = 0; b < a; ++b) {
-      const Real b2 = a2 + near[b].distance * near[b].distance;
-      if (near[b].axis == near[a].axis || b2 >= radius * radius) continue;
-      const Mirror edge = reflect(face, near[b]);
-      f(edge);
-      for (std::size_t c = 0; c < b; ++c) {
-        const Real c2 = b2 + near[c].distance * near[c].distance;
-        if (edge.axes[static_cast<std::size_t>(near[c].axis)] || c2 >= radius * radius) continue;
-        f(reflect(edge, near[c]));
-      }
+  for_each_wall_set(model, motion, p, radius, [&](std::span<const int> walls) {
+    Mirror mirror;
+    for (const int wall : walls) {
+      const int axis = wall / 2;
+      mirror.axes[static_cast<std::size_t>(axis)] = true;
+      mirror.twice_plane[axis] =
+          2 * ((wall % 2 == 0 ? vat.min : vat.max)[axis] + motion.offset[axis]);
     }
-  }
+    f(mirror);
+  });
 }
 
 }  // namespace vat

@@ -103,9 +103,14 @@ class CandidateSearch {
     cluster.has_mirrored =
         count > cluster.first_candidate && found[count - 1] >= search_.first_mirrored;
     make_room_for_found(found, count + lanes_);
-    while ((count - cluster.first_candidate) % lanes_ != 0) found[count++] = search_.padding;
+    const std::size_t rest = (count - cluster.first_candidate) % lanes_;
+    if (rest > 0) {
+      std::fill_n(found.begin() + static_cast<std::ptrdiff_t>(count), lanes_ - rest,
+                  search_.padding);
+      count += lanes_ - rest;
+    }
     cluster.candidate_count = static_cast<Index>(count - cluster.first_candidate);
-    VAT_CHECK(cluster.candidate_count % lanes_ == 0 && count <= found.size());
+    VAT_CHECK(count <= found.size());
     return count;
   }
 

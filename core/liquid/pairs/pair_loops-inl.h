@@ -134,6 +134,9 @@ void sum_cluster(const PairInputs& in, const TargetCluster& cluster, Tile<T>& ti
         target.viscosity = Simd<T>::set(in.target_viscosities == nullptr
                                             ? in.viscosity
                                             : in.target_viscosities[i + t - in.first_target]);
+        if constexpr (Term::kParts.image_share) {
+          if (in.images_decide) target.pressure = Simd<T>::set(0);
+        }
         group[t] = sum_tile<T, Term>(target, tile, count);
       }
       Real* const out = sums + Term::kSums * (i - cluster.begin);

@@ -59,12 +59,11 @@ void for_each_shifted(const Model& model, Index n, const Vec3& p, Real reach, F&
   });
 }
 
-/// Calls f(image) for the images of source `n` at `p` in walls.
+/// Calls f(image) for the images of source `n` at `p` in walls of a periodic world.
 template <class F>
 void for_each_mirrored(const Model& model, const VatMotion& motion, Index n, const Vec3& p,
                        Real reach, F&& f) {
   for_each_mirror(model, motion, p, reach, [&](const Mirror& mirror) {
-    if (!model.periodic.any()) return f(PairImage{mirror.twice_plane, n, mirror.axes});
     model.periodic.for_each_image(mirror.place(p), reach, [&](const Vec3& shift) {
       f(PairImage{mirror.twice_plane + shift, n, mirror.axes});
     });
@@ -147,10 +146,17 @@ void PairSources::find_images(const StepContext& c, Real reach, Images kind) {
     std::vector<PackedImage> found = std::move(found_[begin / kBlockSize]);
     found.clear();
     const auto add = [&](const PairImage& image) { add_closely(found, offsets_.pack(image)); };
+    const bool is_plain = is_mirrored && !c.model.periodic.any();
     for (std::size_t s = begin; s < end; ++s) {
       if (shown.hides(points.x[s], points.y[s], points.z[s])) continue;
       const Index n = first + static_cast<Index>(s);
       const Vec3 p = place_of(points, s);
+      if (is_plain) {
+        for_each_wall_set(c.model, motion, p, reach, [&](std::span<const int> walls) {
+          add_closely(found, ImageOffsets::in_walls(n, walls));
+        });
+        continue;
+      }
       is_mirrored ? for_each_mirrored(c.model, motion, n, p, reach, add)
                   : for_each_shifted(c.model, n, p, reach, add);
     }

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/limits.h"
@@ -40,12 +41,22 @@ class ImageOffsets {
   ImageOffsets(const Model& model, const VatMotion& motion);
 
   PackedImage pack(const PairImage& image) const;
+  /// Returns the image of `source` in walls, without periodic shifts.
+  static PackedImage in_walls(Index source, std::span<const int> walls) {
+    PackedImage packed{source, {}};
+    for (const int wall : walls) {
+      packed.offsets[static_cast<std::size_t>(wall / 2)] = wall % 2 == 0 ? low_wall : high_wall;
+    }
+    return packed;
+  }
   PairImage unpack(const PackedImage& image) const {
     const auto& [x, y, z] = image.offsets;
     return {{offsets_[0][x], offsets_[1][y], offsets_[2][z]},
             image.source,
-            {x >= low_wall, y >= low_wall, z >= low_wall}};
+            {reflects(x), reflects(y), reflects(z)}};
   }
+  /// Returns whether an image with the offset `index` is reflected along the offset's axis.
+  static bool reflects(std::uint8_t index) { return index >= low_wall; }
 
  private:
   enum Kind : std::uint8_t { none, back, on, low_wall, high_wall };
@@ -102,6 +113,15 @@ class PairSources {
         }
       });
     }
+  }
+  /// Sets the motions of solids like set_other_motions(). Images have the turned velocities of
+  /// their sources and no pressure.
+  template <class Solid>
+  void set_turned_motions(TaskRunner* runner, Solid&& solid) {
+    for_blocks(runner, images_begin_ - solids_, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t s = begin; s < end; ++s) set_motion(solids_ + s, solid(s));
+    });
+    is_single_ ? turn_motions(runner, packed_motions_) : turn_motions(runner, motions_);
   }
   PairMotion motion(std::size_t n) const {
     if (!is_single_) return motions_[n];
@@ -202,6 +222,22 @@ class PairSources {
       packed_places_[n].weight = static_cast<float>(weight);
     } else {
       places_[n].weight = weight;
+    }
+  }
+  template <class Motion>
+  void turn_motions(TaskRunner* runner, std::vector<Motion>& motions) const {
+    for (const ImageGroup& group : images_) {
+      for_blocks(runner, group.count(), [&](std::size_t begin, std::size_t end) {
+        const PackedImage* const images = group.all.data();
+        Motion* const turned = motions.data() + group.first;
+        for (std::size_t s = begin; s < end; ++s) {
+          const Motion& source = motions[images[s].source];
+          const auto turn = [&](std::size_t axis, auto v) {
+            return ImageOffsets::reflects(images[s].offsets[axis]) ? -v : v;
+          };
+          turned[s] = {0, turn(0, source.vx), turn(1, source.vy), turn(2, source.vz)};
+        }
+      });
     }
   }
   template <class Place, class Charge>

@@ -99,8 +99,9 @@ struct PairInputs {
   Real viscosity = 0;                        ///< mu of all targets
   Real inverse_support = 0;                  ///< [1/m]
   Index first_mirrored = 0;                  ///< sources from here on are images in walls
-  Index first_target = 0;                    ///< the source whose sums are written first
-  const Index* candidates = nullptr;         ///< of the chunk of the clusters
+  bool images_decide = false;         ///< for drag without viscosities by source: p_i counts as 0
+  Index first_target = 0;             ///< the source whose sums are written first
+  const Index* candidates = nullptr;  ///< of the chunk of the clusters
 
   /// Returns inputs for sums that begin with target `first`.
   PairInputs from_target(Index first) const {

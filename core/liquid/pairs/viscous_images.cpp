@@ -1,5 +1,8 @@
 #include "core/liquid/pairs/viscous_images.h"
 #include "core/liquid/pairs/scratch.h"
+
+#include <array>
+
 #include "core/model/acting_forces.h"
 
 #include "core/liquid/pairs/coupled_pairs.h"
@@ -15,56 +18,98 @@ struct MirroredVelocity {
   Vec3 shift = Vec3::Zero();
 };
 
-/// The mirrored velocity for a mirror seen from `place` inside: one wall after the other, each in
-/// its own frame. A slip wall keeps the velocity along it. If `walls_move` is false, the walls are
-/// at rest.
-MirroredVelocity mirrored_velocity(const Vat& vat, const VatMotion& motion, bool walls_move,
-                                   const Mirror& mirror, const Vec3& place) {
-  MirroredVelocity result;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!mirror.axes[static_cast<std::size_t>(axis)]) continue;
-    const bool is_low = 2 * place[axis] > mirror.twice_plane[axis];
-    const Wall& wall = vat.walls[2 * static_cast<std::size_t>(axis) + (is_low ? 0 : 1)];
-    Vec3 factor = Vec3::Constant(wall.no_slip ? -1 : 1);
-    factor[axis] = -1;
-    const Vec3 of_wall = walls_move ? Vec3(motion.velocity + wall.velocity) : Vec3(Vec3::Zero());
-    result.is_dragged = result.is_dragged || wall.no_slip;
-    result.factor = factor.cwiseProduct(result.factor);
-    result.shift = factor.cwiseProduct(result.shift - of_wall) + of_wall;
+/// The mirrored velocities by the walls of the images: the index is the sum of 3^axis for low walls
+/// and 2 * 3^axis for high walls.
+class MirroredVelocities {
+ public:
+  /// If `walls_move` is false, the walls are at rest.
+  MirroredVelocities(const Vat& vat, const VatMotion& motion, bool walls_move) {
+    for (std::size_t index = 0; index < all_.size(); ++index) {
+      all_[index] = velocity_of(vat, motion, walls_move, index);
+    }
   }
-  return result;
+  /// Returns the mirrored velocity for `mirror`, seen from `place` inside.
+  const MirroredVelocity& at(const Mirror& mirror, const Vec3& place) const {
+    std::size_t index = 0;
+    std::size_t step = 1;
+    for (int axis = 0; axis < 3; ++axis, step *= 3) {
+      if (!mirror.axes[static_cast<std::size_t>(axis)]) continue;
+      index += 2 * place[axis] > mirror.twice_plane[axis] ? step : 2 * step;
+    }
+    return all_[index];
+  }
+
+ private:
+  /// One wall after the other, each in its own frame. A slip wall keeps the velocity along it.
+  static MirroredVelocity velocity_of(const Vat& vat, const VatMotion& motion, bool walls_move,
+                                      std::size_t index) {
+    MirroredVelocity result;
+    for (int axis = 0; axis < 3; ++axis, index /= 3) {
+      if (index % 3 == 0) continue;
+      const Wall& wall = vat.walls[2 * static_cast<std::size_t>(axis) + index % 3 - 1];
+      Vec3 factor = Vec3::Constant(wall.no_slip ? -1 : 1);
+      factor[axis] = -1;
+      const Vec3 of_wall = walls_move ? Vec3(motion.velocity + wall.velocity) : Vec3(Vec3::Zero());
+      result.is_dragged = result.is_dragged || wall.no_slip;
+      result.factor = factor.cwiseProduct(result.factor);
+      result.shift = factor.cwiseProduct(result.shift - of_wall) + of_wall;
+    }
+    return result;
+  }
+
+  std::array<MirroredVelocity, 27> all_;
+};
+
+/// Sets the motions of sources for the sum PairSums::drag. The pressure of a source states whether
+/// the source takes part: for an image itself, for a particle all its images.
+void set_motions(const StepContext& c, const std::vector<Vec3>& velocities, bool walls_move) {
+  LiquidScratch& buffers = c.work.of<LiquidScratch>();
+  const Model& model = c.model;
+  const std::span<const Index> order = buffers.liquid.grid.order();
+  const MirroredVelocities mirrored(*model.scene.vat, motion_of(c), walls_move);
+  const auto is_thick_at = [&](Index i) -> Real {
+    return is_thick(liquid_of(model, i), model.scene.dimensions);
+  };
+  const auto image_motion = [&](const PairImage& image, const PairMotion& source, Real thick) {
+    const bool is_mirrored = image.axes[0] || image.axes[1] || image.axes[2];
+    if (image.source >= order.size() || !is_mirrored) return PairMotion{};
+    const MirroredVelocity& turned =
+        mirrored.at(image.mirror(), buffers.sources.place(image.source));
+    const Vec3 velocity(source.vx, source.vy, source.vz);
+    return vat::motion_of(turned.is_dragged ? 1 : thick,
+                          turned.factor.cwiseProduct(velocity) + turned.shift);
+  };
+  const auto solid_motion = [](std::size_t) { return PairMotion{}; };
+  if (!has_several_liquids(model)) {
+    buffers.sources.set_other_motions(
+        c.runner, solid_motion,
+        [&, thick = is_thick_at(0)](const PairImage& image, const PairMotion& source) {
+          return image_motion(image, source, thick);
+        });
+    return;
+  }
+  buffers.sources.set_motions(
+      c.runner,
+      [&](std::size_t s) { return vat::motion_of(is_thick_at(order[s]), velocities[order[s]]); },
+      solid_motion,
+      [&](const PairImage& image, const PairMotion& source) {
+        return image_motion(image, source, source.pressure);
+      });
 }
 
 }  // namespace
 
-// The pressure of a source tells whether it takes part: for an image itself, for a particle all its
-// images.
 void add_viscous_image_forces(const StepContext& c, const std::vector<Vec3>& velocities,
                               bool walls_move, std::vector<Vec3>& force) {
   LiquidScratch& buffers = c.work.of<LiquidScratch>();
   const Model& model = c.model;
-  const VatMotion motion = motion_of(c);
   const std::span<const Index> order = buffers.liquid.grid.order();
-  const auto is_thick_at = [&](Index i) -> Real {
-    return is_thick(liquid_of(model, i), model.scene.dimensions);
-  };
-  buffers.sources.set_motions(
-      c.runner,
-      [&](std::size_t s) { return vat::motion_of(is_thick_at(order[s]), velocities[order[s]]); },
-      [](std::size_t) { return PairMotion{}; },
-      [&](const PairImage& image, const PairMotion& source) {
-        const bool is_mirrored = image.axes[0] || image.axes[1] || image.axes[2];
-        if (image.source >= order.size() || !is_mirrored) return PairMotion{};
-        const Mirror mirror = image.mirror();
-        const MirroredVelocity mirrored = mirrored_velocity(
-            *model.scene.vat, motion, walls_move, mirror, buffers.sources.place(image.source));
-        const Vec3 velocity(source.vx, source.vy, source.vz);
-        return vat::motion_of(mirrored.is_dragged ? 1 : source.pressure,
-                              mirrored.factor.cwiseProduct(velocity) + mirrored.shift);
-      });
-  if (has_several_liquids(model)) set_image_viscosities(c);
+  set_motions(c, velocities, walls_move);
+  const bool differ = has_several_liquids(model);
+  if (differ) set_image_viscosities(c);
   PairInputs inputs = force_inputs(c);
   inputs.first_mirrored = buffers.sources.first_mirrored_liquid();
+  inputs.images_decide = !differ;
   const PairSums& table = pair_sums_of(c);
   const auto factor =
       by_material(model, [&](const LiquidModel& liquid) { return slope_factor(model, liquid); });

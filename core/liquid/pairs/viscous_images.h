@@ -20,8 +20,9 @@ namespace vat {
 /// whose purpose is the damping of sound.
 void add_viscous_image_forces(StepContext& context);
 
-/// Adds these forces for the given velocities of the particles to `force`. If `walls_move` is
-/// false, all walls are at rest.
+/// Adds these forces for the given velocities of the particles to `force`. The liquid slots of
+/// LiquidScratch::sources must have these velocities. If `walls_move` is false, all walls are at
+/// rest.
 void add_viscous_image_forces(const StepContext& context, const std::vector<Vec3>& velocities,
                               bool walls_move, std::vector<Vec3>& force);
 

@@ -71,8 +71,8 @@ void add_coupled_force_stages(const Model& model, PlanBuilder& plan) {
              {pair_motion, force}, &add_tait_forces);
   }
   if (has_viscous_images(model)) {
-    plan.add("viscous_images", {velocity, liquid_cells, pair_clusters, force}, {pair_motion, force},
-             static_cast<StageFunction>(&add_viscous_image_forces));
+    plan.add("viscous_images", {velocity, liquid_cells, pair_clusters, pair_motion, force},
+             {pair_motion, force}, static_cast<StageFunction>(&add_viscous_image_forces));
   }
   if (model.is_filled) {
     add_list_stages(model, plan);

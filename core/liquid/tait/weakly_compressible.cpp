@@ -29,8 +29,12 @@ class NearWalls {
     }
   }
   int count(const Vec3& place) const {
-    return static_cast<int>((place.array() < low_.array()).count() +
-                            (place.array() > high_.array()).count());
+    int count = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+      count +=
+          static_cast<int>(place[axis] < low_[axis]) + static_cast<int>(place[axis] > high_[axis]);
+    }
+    return count;
   }
 
  private:
@@ -42,12 +46,11 @@ class NearWalls {
 /// corner, must not exceed the density at rest. A single particle then has no pressure, and the
 /// mirror reflects it in a corner as at a face. With their pressure, it would be on a spring of up
 /// to six times c / h, and the step allows for half of that.
-Real own_excess(const StepContext& c, const VatMotion& motion, const NearWalls& walls,
-                const LiquidModel& liquid, std::size_t slot) {
-  const CellSortedPoints& points = c.work.of<LiquidScratch>().liquid;
-  const Vec3 place(points.x[slot], points.y[slot], points.z[slot]);
+Real own_excess(const StepContext& c, const VatMotion& motion, const NearWalls& walls, Index i,
+                const Vec3& place) {
+  const LiquidModel& liquid = liquid_of(c.model, i);
+  const Real volume = c.model.rest_volume[i];
   Real own = liquid.kernel.value(0);
-  const Real volume = c.model.rest_volume[points.grid.order()[slot]];
   // An image adds at most the value at distance 0, and n walls have at most 2^n - 1 images.
   if (volume * own * static_cast<Real>(1 << walls.count(place)) <= 1) return 0;
   // An image is as far beyond a wall, edge or corner as the particle is inside.
@@ -93,7 +96,8 @@ void compute_tait_density(StepContext& c) {
   if (buffers.density_version == buffers.sources.version()) return;
   const VatMotion motion = motion_of(c);
   const NearWalls walls(model, motion, support_of(model) / 2);
-  const std::span<const Index> order = buffers.liquid.grid.order();
+  const CellSortedPoints& points = buffers.liquid;
+  const std::span<const Index> order = points.grid.order();
   buffers.density.resize(model.liquid_count);
   const PairSums& table = pair_sums_of(c);
   const auto factor =
@@ -105,7 +109,8 @@ void compute_tait_density(StepContext& c) {
     const Index material = model.material[i];
     Real sum = *sums * factor[material];
     if (cluster.has_mirrored && sum > 1) {
-      sum -= own_excess(c, motion, walls, liquid_of(model, i), slot);
+      const Vec3 place(points.x[slot], points.y[slot], points.z[slot]);
+      if (walls.count(place) > 0) sum -= own_excess(c, motion, walls, i, place);
     }
     buffers.density[i] = rest_density[material] * sum;
   };

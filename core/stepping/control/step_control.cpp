@@ -307,7 +307,7 @@ void find_present_steps(const ForceModel& f, State& state, Real time, Real longe
   limit_rigid_travel(present, steps.rigid);
   steps.liquid = liquid_step(present, steps.pressures);
   limit_grabs(f, steps);
-  const Real approach = greatest_approach(present, longest);
+  const Real approach = model.contact_reach > 0 ? greatest_approach(present, longest) : 0;
   if (model.contact_reach > 0 && !contact_buffers.contacts.is_current(context, approach)) {
     if (model.liquid_count > 0) sort_liquid(context);
     contact_buffers.contacts.update(context, approach);

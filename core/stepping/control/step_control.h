@@ -34,7 +34,7 @@ struct PresentSteps {
 /// - Resolution of contacts that act, or may act before the end of the step, to the tolerance.
 /// - Travel at the present speed and force by at most half the distance that the guard allows. For
 ///   liquids, the limit is a quarter of the support radius relative to the mean motion of the
-///   liquids, or a fifth for incompressible liquids.
+///   liquids.
 /// - The pressure in an incompressible liquid, except for the highest 1 % of the values; see
 ///   pressed_lattice_omega2().
 /// - Rotation of rigid bodies by at most half a radian.

@@ -10,11 +10,6 @@ namespace vat {
 namespace {
 
 constexpr Real kLiquidTravelShare = 0.25;  // of the support radius, for each of two particles
-constexpr Real kIncompressibleTravelShare = 0.2;  // densities change by one percent in a step
-
-Real travel_share(const Model& model) {
-  return model.is_incompressible ? kIncompressibleTravelShare : kLiquidTravelShare;
-}
 
 /// The bound of a body's own forces: sound and viscosity; or pressure, if viscosity is solved.
 Oscillation liquid_bound(const Model& model, std::size_t body, Real pressure) {
@@ -28,6 +23,7 @@ Oscillation liquid_bound(const Model& model, std::size_t body, Real pressure) {
 }  // namespace
 
 Real travel_time(Real way, Real speed, Real acceleration) {
+  if (acceleration == 0) return way / speed;
   return 2 * way / (speed + std::sqrt(speed * speed + 4 * acceleration * way));
 }
 
@@ -40,7 +36,7 @@ Oscillation compressed(const Model& model, const Oscillation& liquid) {
 Real step_of_liquid(const Model& model, std::size_t body, const LiquidMotion& motion) {
   VAT_CHECK(model.bodies[body].kind == BodyKind::liquid);
   const LiquidModel& liquid = *model.liquids[model.bodies[body].material];
-  const Real way = travel_share(model) * liquid.support_radius;
+  const Real way = kLiquidTravelShare * liquid.support_radius;
   return std::min(safe_step(model.scene.numerics, liquid_bound(model, body, motion.pressure)),
                   travel_time(way, motion.speed, motion.acceleration));
 }

@@ -54,8 +54,11 @@ class Problem {
     System system{*this, {}, std::vector<Real>(count_)};
     const SolveReport report = problem.solve(limits, runner, system);
     whole_ = system.whole;
+    products_ = system.products;
     return report;
   }
+  /// Returns the number of products that the solver has read.
+  int products() const { return products_; }
   /// Returns the sum of all steps that the solver applied.
   const std::vector<Real>& whole() const { return whole_; }
   /// Computes the excess anew, not incrementally as the solver does.
@@ -72,9 +75,20 @@ class Problem {
     const Problem& problem;
     std::vector<Real> last;
     std::vector<Real> whole;
+    int products = 0;
 
-    void act(const std::vector<Real>& d) { last = d; }
-    void find_product(std::vector<Real>& product) { problem.multiply(last, product); }
+    Real act(const std::vector<Real>& d) {
+      last = d;
+      std::vector<Real> product(d.size());
+      problem.multiply(d, product);
+      Real curvature = 0;
+      for (std::size_t i = 0; i < d.size(); ++i) curvature += d[i] * product[i];
+      return curvature;
+    }
+    void find_product(std::vector<Real>& product) {
+      problem.multiply(last, product);
+      ++products;
+    }
     void add(Real share) {
       for (std::size_t i = 0; i < last.size(); ++i) whole[i] += share * last[i];
     }
@@ -84,6 +98,7 @@ class Problem {
   std::vector<Real> matrix_;
   std::vector<Real> excess_;
   mutable std::vector<Real> whole_;
+  mutable int products_ = 0;
 };
 
 constexpr SolveLimits kClose{1e-10, 1e-9, 10000};
@@ -135,6 +150,40 @@ TEST(Complementarity, TakesNoIterationIfItIsSolved) {
   const std::vector<Real> x = problem.x;
   EXPECT_EQ(given.solve(problem, kClose).iterations, 0);
   EXPECT_EQ(problem.x, x);
+}
+
+// The limits are met by the expected residuals of the first iteration, of the second, or not.
+TEST(Complementarity, ComputesNoResidualsOfAnIterationThatIsExpectedToBeTheLast) {
+  const Problem given(60, 5);
+  Complementarity measured = given.start();
+  const SolveReport start = given.solve(measured, {0, 0, 0});
+  for (const int last : {1, 2}) {
+    Complementarity problem = given.start();
+    SolveReport before = start;
+    if (last == 2) before = given.solve(problem, {0, 0, 1});
+    problem = given.start();
+    SolveLimits limits{before.mean / 4, before.greatest / 4, 3};
+    limits.first_reduction = last == 1 ? 0.25 : 1e3;
+    limits.later_reduction = 0.25;
+    const SolveReport report = given.solve(problem, limits);
+    EXPECT_EQ(report.iterations, last);
+    EXPECT_EQ(given.products(), last - 1);
+    EXPECT_EQ(report.mean, before.mean / 4);
+    EXPECT_EQ(report.greatest, before.greatest / 4);
+    const std::vector<Real> whole = given.whole();
+    EXPECT_EQ(given.solve(measured = given.start(), {0, 0, last}).iterations, last);
+    EXPECT_EQ(given.products(), last);
+    EXPECT_EQ(problem.x, measured.x);
+    EXPECT_EQ(given.whole(), whole);
+
+    limits.mean /= 1.001;
+    given.solve(problem = given.start(), limits);
+    EXPECT_GE(given.products(), last) << "the expected mean exceeds its limit";
+    limits.mean = before.mean;
+    limits.greatest /= 1.001;
+    given.solve(problem = given.start(), limits);
+    EXPECT_GE(given.products(), last) << "the expected maximum exceeds its limit";
+  }
 }
 
 TEST(Complementarity, EndsInBoundsAtTheLimitOfIterations) {

@@ -109,6 +109,7 @@ TEST(PressureResponse, IsSymmetricAndPositive) {
       const std::vector<Real> a = random_numbers(place.count(), 1);
       const std::vector<Real> b = random_numbers(place.count(), 2);
       const std::vector<Real> react_a = place.react(a);
+      EXPECT_NEAR(place.response->energy() / dot(a, react_a), 1, 1e-12);
       const std::vector<Real> react_b = place.react(b);
       EXPECT_GT(dot(a, react_a), 0);
       EXPECT_NEAR(dot(a, react_b) / dot(b, react_a), 1, 1e-12);
@@ -191,6 +192,38 @@ TEST(PressureResponse, HasTheRateOfItsKick) {
   for (std::size_t s = 0; s < expected.size(); ++s) {
     EXPECT_NEAR((after[s] - before[s]) / kTime, expected[s], 1e-10 * greatest) << s;
   }
+}
+
+TEST(PressureResponse, KicksByTheSumOfItsAccelerations) {
+  Place parts(make_pool());
+  Place whole(make_pool());
+  const std::vector<Real> a = random_numbers(parts.count(), 4);
+  const std::vector<Real> b = random_numbers(parts.count(), 5);
+  std::vector<Real> sum(a.size());
+  for (std::size_t s = 0; s < a.size(); ++s) sum[s] = 2 * a[s] - 3 * b[s];
+  const auto act = [](Place& place, const std::vector<Real>& pressure, Real share) {
+    place.response->accelerate(pressure);
+    place.response->add(share);
+  };
+  act(parts, a, 1);
+  act(parts, b, -3);
+  act(parts, a, 1);
+  act(whole, sum, 1);
+  const Configuration before = whole.state.now;
+  parts.response->kick(1);
+  whole.response->kick(1);
+  Real greatest = 0;
+  for (std::size_t i = 0; i < before.velocity.size(); ++i) {
+    greatest = std::max(greatest, (whole.state.now.velocity[i] - before.velocity[i]).norm());
+  }
+  EXPECT_GT(greatest, 0);
+  for (std::size_t i = 0; i < before.velocity.size(); ++i) {
+    const Vec3 difference = parts.state.now.velocity[i] - whole.state.now.velocity[i];
+    EXPECT_LT(difference.norm(), 1e-12 * greatest) << i;
+  }
+  const Vec3 momentum = parts.state.now.rigid[0].momentum - before.rigid[0].momentum;
+  const Vec3 expected = whole.state.now.rigid[0].momentum - before.rigid[0].momentum;
+  EXPECT_LT((momentum - expected).norm(), 1e-12 * expected.norm());
 }
 
 TEST(PressureResponse, KeepsMomentumWithoutWalls) {

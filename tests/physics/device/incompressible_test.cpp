@@ -66,14 +66,16 @@ const SceneCase kScenes[] = {
      }},
 };
 
-// Both compute sums over pairs in single precision. Differences from double precision are therefore
-// of equal size, up to the order of sums. The residuals of the solves are far smaller.
+// Both compute sums over pairs in single precision. The device adds the terms in sequence, the CPU
+// in up to 16 lanes. The rounding error grows with the square root of the number of terms in
+// sequence, so that the ratio is at most 4. The residuals of the solves are far smaller.
 TEST(IncompressibleDevice, HasTheAccuracyOfTheCpu) {
   constexpr std::uint32_t kSteps = 15;
+  constexpr Real kRatio = 4;
   Scene scene = make_column();
   scene.incompressible.divergence_tolerance = 1e-7;
-  expect_accuracy_of_cpu(scene, kCommonScenes, kSteps);
-  expect_accuracy_of_cpu(scene, kScenes, kSteps);
+  expect_accuracy_of_cpu(scene, kCommonScenes, kSteps, kRatio);
+  expect_accuracy_of_cpu(scene, kScenes, kSteps, kRatio);
 }
 
 TEST(IncompressibleDevice, ChoosesTheStepsOfTheCpu) {
@@ -259,15 +261,15 @@ TEST(IncompressibleDevice, ContinuesAStateOfTheCpuAndTheReverse) {
 TEST(IncompressibleDevice, HasTheSameBitsOnEveryDeviceIfExact) {
   Simulation fixed = make_on_device(make_column());
   EXPECT_EQ(fixed.advance(60).device_steps, 60U);
-  EXPECT_EQ(fixed.state_hash(), 0x5aa97095959dd31U);
+  EXPECT_EQ(fixed.state_hash(), 0x23d01b52fd1c2d31U);
   Scene with_solids = make_column();
   add_fixed_bodies(with_solids);
   Simulation wet = make_on_device(with_solids);
   EXPECT_EQ(wet.advance(30).device_steps, 30U);
-  EXPECT_EQ(wet.state_hash(), 0x2a717da78eb38178U);
+  EXPECT_EQ(wet.state_hash(), 0x2aa24cc4d5b4725aU);
   Simulation adaptive = make_on_device(make_adaptive());
   EXPECT_EQ(adaptive.advance(12).device_steps, 12U);
-  EXPECT_EQ(adaptive.state_hash(), 0x14f184705484cb72U);
+  EXPECT_EQ(adaptive.state_hash(), 0x10dd413b08b7f92eU);
 }
 
 TEST(IncompressibleDevice, LeavesAFailedStepToTheCpu) {
