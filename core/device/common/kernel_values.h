@@ -29,6 +29,11 @@ inline void store(const Quat& from, double (&to)[4]) {
   for (int k = 0; k < 4; ++k) to[k] = from.coeffs()[k];
 }
 
+/// Returns a count as an argument of a kernel.
+inline std::int32_t number_of(std::size_t count) {
+  return static_cast<std::int32_t>(count);
+}
+
 /// Returns the number of groups of work-items for `particles`, each of which has a partial result.
 inline std::int32_t groups_of(std::size_t particles) {
   constexpr std::size_t kGroup = opencl::Program::kGroup;

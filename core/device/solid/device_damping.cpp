@@ -25,10 +25,6 @@ struct DampingProgress {
   std::int32_t is_open;
 };
 
-std::int32_t number_of(std::size_t count) {
-  return static_cast<std::int32_t>(count);
-}
-
 /// The bytes of the partial sums of the groups of particles and of the rigid bodies.
 std::size_t bytes_of_sums(const Model& model) {
   return (static_cast<std::size_t>(groups_of(SolidRange(model).count)) +

@@ -1,16 +1,13 @@
 #include "core/device/solid/device_integration.h"
 
 #include <algorithm>
-#include <cstdint>
+
+#include "core/device/common/kernel_values.h"
 
 namespace vat {
 namespace {
 
 using opencl::Program;
-
-std::int32_t number_of(std::size_t count) {
-  return static_cast<std::int32_t>(count);
-}
 
 std::size_t bytes_of_poses(const Model& model) {
   return std::max<std::size_t>(1, model.rigid_bodies.size()) * DeviceRigidBodies::kPoseBytes;
