@@ -26,8 +26,8 @@ constexpr UnitCost kDeformable{400, 2e-8};
 constexpr UnitCost kSpring{300, 1.3e-8};
 constexpr UnitCost kRigid{360, 2e-8};
 // Cost of surface tension, relative to the cost of the neighbours of a liquid.
-constexpr Real kCurvature = 2;   // four passes over the neighbours, compared with two
-constexpr Real kCohesion = 0.5;  // of the neighbours within twice the support radius
+constexpr Real kCurvatureShare = 2;   // four passes over the neighbours, compared with two
+constexpr Real kCohesionShare = 0.5;  // of the neighbours within twice the support radius
 
 // Support radius of the finest lattice for which kernels are made.
 constexpr Real kMaxSpacings = 8;
@@ -61,8 +61,8 @@ UnitCost liquid_cost(const Scene& scene, const BodyDescription& body, const Samp
   Real neighbours = lattice_neighbours(reach, dimensions);
   if (liquid.surface_tension > 0) {
     neighbours *= scene.surface_model == SurfaceModel::cohesion
-                      ? 1 + kCohesion * std::pow(2, dimensions)
-                      : 1 + kCurvature;
+                      ? 1 + kCohesionShare * std::pow(2, dimensions)
+                      : 1 + kCurvatureShare;
   }
   UnitCost cost = unit_cost(scene.pressure_solver);
   cost.seconds += neighbours * cost.neighbour_seconds;

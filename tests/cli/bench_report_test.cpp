@@ -179,10 +179,12 @@ TEST(BenchValidate, ExitsWithOneIfACaseCannotMeasure) {
 }
 
 /// Adds the position after ten steps, with a tolerance [m].
-void add_position(validation::Sheet& sheet, const char* metric, IntegratorId integrator,
-                  Real tolerance, bool is_held = false) {
-  validation::Run run =
-      sheet.start(validation::with_method(validation::load_scene("DEF-1"), integrator, 1e-3));
+void add_position(validation::Sheet& sheet, const char* metric, StepControl control, Real tolerance,
+                  bool is_held = false) {
+  Scene scene =
+      validation::with_method(validation::load_scene("DEF-1"), IntegratorId::velocity_verlet, 1e-3);
+  scene.numerics.control = control;
+  validation::Run run = sheet.start(scene);
   if (is_held) {
     ASSERT_TRUE(run.simulation().grab_start(1, run.body().id, 1, Vec3::Zero()).ok());
   }
@@ -190,13 +192,13 @@ void add_position(validation::Sheet& sheet, const char* metric, IntegratorId int
   sheet.add(metric, 1.5, run.body().positions[1].x(), validation::within(tolerance, "nobody"), run);
 }
 
-/// A case with one row on a device. The device has velocity Verlet only, and no grabs.
+/// A case with one row on a device. The device has fixed steps of solids only, and no grabs.
 validation::Case case_on_device(Real tolerance) {
   return {"MIXED", "made up", "none", {}, [tolerance](validation::Sheet& sheet) {
             sheet.add({.metric = "no run"});
-            add_position(sheet, "verlet", IntegratorId::velocity_verlet, tolerance);
-            add_position(sheet, "heun", IntegratorId::heun, 1);
-            add_position(sheet, "held", IntegratorId::velocity_verlet, 1, true);
+            add_position(sheet, "fixed", StepControl::fixed, tolerance);
+            add_position(sheet, "adaptive", StepControl::adaptive, 1);
+            add_position(sheet, "held", StepControl::fixed, 1, true);
           }};
 }
 
@@ -208,15 +210,15 @@ TEST(BenchValidate, ComparesTheRowsOnADeviceThatItSupportsWithTheCpu) {
   EXPECT_EQ(validate(options, {case_on_device(1)}, device), 0);
   const test::Table table = test::read_csv(folder.file("out/device.csv"));
   const std::pair<const char*, const char*> expected[] = {{"no run", "no steps"},
-                                                          {"verlet", ""},
-                                                          {"heun", "/numerics/integrator"},
+                                                          {"fixed", ""},
+                                                          {"adaptive", "/numerics/control"},
                                                           {"held", "the CPU took 10 of 10 steps"}};
   ASSERT_EQ(table.rows.size(), std::size(expected));
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     const auto& [metric, refused] = expected[row];
     EXPECT_EQ(table.text(row, "metric"), metric);
     EXPECT_EQ(table.text(row, "refused"), refused);
-    const bool is_on_device = metric == std::string("verlet");
+    const bool is_on_device = metric == std::string("fixed");
     EXPECT_EQ(table.text(row, "passed"), is_on_device ? "true" : "");
     EXPECT_EQ(table.text(row, "error of the CPU").empty(), !is_on_device);
   }
