@@ -46,14 +46,15 @@ class Bucket {
   /// As put(), but calls `done` with the new revision.
   void put(const std::string& key, const std::string& value, std::uint64_t revision,
            std::function<void(Stream::Appended)> done);
-  /// Removes the value if the key has the revision. Returns the revision of the mark that remains.
+  /// Removes the value if the key has the revision. NATS then stores a mark of the removal. Returns
+  /// the revision of this mark.
   std::uint64_t remove(const std::string& key, std::uint64_t revision);
   /// Writes a value if no key of the bucket has changed after the revision. Returns the new
   /// revision. Throws NatsError (kind `conflict`) if a key has changed.
   std::uint64_t put_after(const std::string& key, const std::string& value,
                           std::uint64_t last_revision);
-  /// Removes a value if no key of the bucket has changed after the revision. Returns the revision
-  /// of the mark that remains. Throws NatsError (kind `conflict`) if a key has changed.
+  /// As remove(), if no key of the bucket has changed after the revision. Throws NatsError (kind
+  /// `conflict`) if a key has changed.
   std::uint64_t remove_after(const std::string& key, std::uint64_t last_revision);
   /// Removes the mark of a removal, unless the key has a newer revision. Does not wait. A failure
   /// has no effect.

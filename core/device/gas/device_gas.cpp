@@ -1,6 +1,5 @@
 #include "core/device/gas/device_gas.h"
 
-#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -23,7 +22,6 @@ struct Gas {
 struct GasStep {
   double drag;
   double still[3];
-  std::int32_t liquids;
 };
 
 constexpr std::size_t kVolumeAndPressure = 2 * sizeof(double);
@@ -52,7 +50,6 @@ Buffer make_gases(Program& program, const Model& model) {
 
 GasStep step_of(const Model& model, Real end) {
   GasStep step{};
-  step.liquids = static_cast<std::int32_t>(model.liquid_count);
   const Scene& scene = model.scene;
   if (scene.settling && end < scene.settling->until) {
     step.drag = scene.settling->drag;
@@ -81,7 +78,7 @@ void DeviceGas::add_forces(const Model& model, const DeviceSolids& bodies, Real 
   const PlacedSolids at = bodies.placed();
   const SolidTables& t = at.tables;
   const GasStep step = step_of(model, end);
-  program_.run("find_gas_pressure", model.particle_count, p, step, at.cells.begins, at.order,
+  program_.run("find_gas_pressure", model.particle_count, p, at.cells.begins, at.order,
                at.sorted_position, at.predicted, t.mass, t.body_of, t.bodies, gases_,
                volume_and_pressure_, sorted_velocity_);
   program_.run("add_gas_forces", model.particle_count, p, step, at.cells.begins, at.order,

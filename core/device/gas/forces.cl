@@ -15,7 +15,6 @@ typedef struct {
 typedef struct {
   double drag;      // of settling, 1/s
   double still[3];  // velocity that the settling drag leaves
-  int liquids;      // particles of liquids
 } GasStep;
 
 // Runs BODY for each particle `j` in `slot` that is closer to the place `at` than `support`, and of
@@ -37,7 +36,7 @@ typedef struct {
           const double3 way = at - sorted_position[slot].xyz;                  \
           const double square = product(way, way);                             \
           const int j = order[slot];                                           \
-          if (!(square < support * support) || j == i || j >= step.liquids) continue; \
+          if (!(square < support * support) || j == i || j >= p.liquids) continue; \
           if (bodies[body_of[j]].material != material) continue;               \
           BODY                                                                 \
         }                                                                      \
@@ -47,7 +46,7 @@ typedef struct {
 
 // The volume of each particle, its pressure times the share, and its velocity in forces. All are in
 // the order of cells.
-kernel void find_gas_pressure(const Solids p, const GasStep step, global const int* begins,
+kernel void find_gas_pressure(const Solids p, global const int* begins,
                               global const int* order, global const double4* sorted_position,
                               global const double* predicted, global const double* mass,
                               global const int* body_of, global const Body* bodies,
@@ -56,7 +55,7 @@ kernel void find_gas_pressure(const Solids p, const GasStep step, global const i
   const int own_slot = get_global_id(0);
   if (own_slot >= p.count) return;
   const int i = order[own_slot];
-  if (i >= step.liquids) return;
+  if (i >= p.liquids) return;
   const int material = bodies[body_of[i]].material;
   const Gas gas = gases[material];
   const double support = gas.support;
@@ -82,7 +81,7 @@ kernel void add_gas_forces(const Solids p, const GasStep step, global const int*
   const int own_slot = get_global_id(0);
   if (own_slot >= p.count) return;
   const int i = order[own_slot];
-  if (i >= step.liquids) return;
+  if (i >= p.liquids) return;
   const int material = bodies[body_of[i]].material;
   const Gas gas = gases[material];
   const double support = gas.support;

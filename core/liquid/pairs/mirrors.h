@@ -22,7 +22,8 @@ struct Mirror {
 };
 
 /// Calls f(walls) for each set of one to three walls whose images of `p` may be within `radius` [m]
-/// of `p`. Each wall of a set is across a different axis. `walls` is a span of wall numbers.
+/// of `p`. The walls of a set are perpendicular to different axes. `walls` is a span of wall
+/// numbers.
 template <class F>
 void for_each_wall_set(const Model& model, const VatMotion& motion, const Vec3& p, Real radius,
                        F&& f) {
