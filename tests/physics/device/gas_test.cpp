@@ -52,6 +52,13 @@ void add_oil(Scene& scene) {
 
 const SceneCase kScenes[] = {
     {"two liquids that touch", add_oil},
+    {"two bodies of one liquid that touch, beside a ball",
+     [](Scene& scene) {
+       add_oil(scene);
+       scene.bodies[1].material = "water";
+       scene.materials.pop_back();
+       add_solid(scene, BodyKind::rigid, {0.25, 0.06, 0.3});
+     }},
     {"ball on a liquid with friction",
      [](Scene& scene) {
        add_solid(scene, BodyKind::rigid, {0.09, 0.06, 0.205});
