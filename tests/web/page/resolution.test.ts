@@ -1,5 +1,5 @@
 import { describe, expect, it } from 'vitest';
-import { kScales, kSoftwareLevel, Resolution } from '../../../web/viewer/view/base/resolution';
+import { kScales, kSoftwareLevel, Resolution } from '../../../web/viewer/view/pace/resolution';
 
 /** Draws pictures until `until` [ms]. `interval` returns the time of a picture at a scale [ms]. */
 function play(

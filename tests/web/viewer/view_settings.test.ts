@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import { decideStyle } from '../../../web/viewer/view/base/liquid_style';
-import { Pace } from '../../../web/viewer/view/base/pace';
+import { Pace } from '../../../web/viewer/view/pace/pace';
 import {
   defaultSettings,
   settingsFromText,

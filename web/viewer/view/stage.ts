@@ -2,6 +2,7 @@ import { Box3, MathUtils, PerspectiveCamera, Raycaster, Scene, Vector2, Vector3 
 import { WebGLRenderer } from 'three';
 import type { Object3D, Ray, WebGLRenderTarget } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
+import { AnimationFrames } from './pace/animation_frames';
 import { firstDirection } from './base/presets';
 import { isCalm } from './base/calm';
 import { fitBox } from './base/fit';
@@ -10,11 +11,12 @@ import type { Pose } from './base/pose';
 import { FluidPass, kMostRows } from './fluid/fluid_pass';
 import type { FluidLook } from './fluid/fluid_pass';
 import { kLayers } from './base/layers';
-import { kSoftwareLevel, Resolution } from './base/resolution';
+import { kSoftwareLevel, Resolution } from './pace/resolution';
 import { LiquidPass } from './liquid_pass';
 import type { LiquidStyle } from './base/liquid_style';
 import type { SharedUniforms } from './bodies/shared_uniforms';
 import type { SunShadow } from './shadow/sun_shadow';
+import { UnfinishedPictures } from './pace/unfinished_pictures';
 import { WarmUp } from './warm_up';
 import { graphicsOf } from './base/graphics';
 import type { Graphics } from './base/graphics';
@@ -22,9 +24,6 @@ import type { Theme } from './base/theme';
 
 /** Space around the scene in the first view, relative to its size. */
 const kFirstMargin = 1.08;
-
-/** After this time without a picture, the last one is still [ms]. */
-const kStillMs = 300;
 
 /** Renderer, camera and its controls. Draws after changes, at most once per animation frame. */
 export class Stage {
@@ -39,14 +38,13 @@ export class Stage {
   /** Draws the shadow map before each picture, if there is one. */
   sunShadow: SunShadow | undefined;
   private stale = true;
-  private drewLast = false;
-  /** The first animation frame without a picture after the last picture [ms]. */
-  private idleSince = -Infinity;
+  private readonly frames = new AnimationFrames();
   private readonly resolution: Resolution;
   /** The share of the display's rows and columns in the present picture. */
   private scale = 1;
   private counted = { passes: 0, calls: 0 };
   private readonly warmUp: WarmUp;
+  private readonly unfinished: UnfinishedPictures;
   private endWarmUp: (() => void) | undefined;
   /** The properties of the browser's graphics. */
   readonly graphics: Graphics;
@@ -76,6 +74,7 @@ export class Stage {
     this.renderer.extensions.has('EXT_texture_filter_anisotropic'); // early, as `graphics`
     this.graphics = graphicsOf(this.renderer); // early, because the browser answers in order
     this.resolution = new Resolution(this.graphics.isSoftware ? kSoftwareLevel : 0);
+    this.unfinished = new UnfinishedPictures(this.renderer.getContext() as WebGL2RenderingContext);
     this.warmUp = new WarmUp(this.renderer, this.scene);
     this.renderer.info.autoReset = false; // a picture has several passes
     this.renderer.setPixelRatio(fullRatio());
@@ -286,14 +285,13 @@ export class Stage {
   }
 
   private draw(): void {
+    if (this.stale && this.unfinished.areMost()) return;
     const at = performance.now();
     this.beforeDraw();
     this.controls.update();
-    const { drewLast, stale } = this;
-    this.drewLast = stale;
-    if (!stale && drewLast) this.idleSince = at;
-    const isStill = !drewLast && at - this.idleSince > kStillMs;
-    if (this.resolution.add(at, stale && drewLast, !stale && !drewLast)) this.onResolution();
+    const { stale } = this;
+    const { follows, isIdle, isStill } = this.frames.begin(at, stale);
+    if (this.resolution.add(at, follows, isIdle)) this.onResolution();
     // A picture that does not change is drawn once more in full resolution.
     const isLast = !stale && this.scale < 1 && isStill;
     if (!stale && !isLast) return;
@@ -303,8 +301,12 @@ export class Stage {
     if (isLast) this.setScale(1);
     else if (!isStill) this.setScale(this.resolution.scale);
     this.stale = false;
-    if (stale) this.onDrawn(at, drewLast);
+    if (stale) {
+      this.frames.drew();
+      this.onDrawn(at, follows);
+    }
     this.drawNow();
+    this.unfinished.add();
     this.endWarmUp?.();
     this.endWarmUp = undefined;
   }

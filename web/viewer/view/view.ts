@@ -4,7 +4,7 @@ import { attributeOf, quantityError, quantityOf } from './colour/quantity';
 import { setClipPlane } from './base/clip';
 import { decideStyle } from './base/liquid_style';
 import type { LiquidStyle } from './base/liquid_style';
-import { Pace } from './base/pace';
+import { Pace } from './pace/pace';
 import type { ViewSettings } from './base/settings';
 import { linkedSettings, SettingsStore } from './base/settings_store';
 import { shelfOf } from './base/shelf';
