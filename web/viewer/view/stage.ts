@@ -40,8 +40,8 @@ export class Stage {
   private stale = true;
   private readonly frames = new AnimationFrames();
   private readonly resolution: Resolution;
-  /** The share of the display's rows and columns in the present picture. */
-  private scale = 1;
+  /** The share of the display's rows and columns in the present picture; 0: there is none. */
+  private scale = 0;
   private counted = { passes: 0, calls: 0 };
   private readonly warmUp: WarmUp;
   private readonly unfinished: UnfinishedPictures;
@@ -77,7 +77,7 @@ export class Stage {
     this.unfinished = new UnfinishedPictures(this.renderer.getContext() as WebGL2RenderingContext);
     this.warmUp = new WarmUp(this.renderer, this.scene);
     this.renderer.info.autoReset = false; // a picture has several passes
-    this.renderer.setPixelRatio(fullRatio());
+    this.setScale(this.resolution.scale); // early, because a change waits for the graphics
     this.scene.add(this.splats.surface);
     this.fluid = new FluidPass(shared.behind, shared.sun, shared.walls);
     this.camera.up.set(0, 0, 1);

@@ -1,6 +1,5 @@
 import { BufferAttribute, BufferGeometry, LatheGeometry, Quaternion, SphereGeometry } from 'three';
 import { Vector2, Vector3 } from 'three';
-import { RoundedBoxGeometry } from 'three/examples/jsm/geometries/RoundedBoxGeometry.js';
 import { toCreasedNormals } from 'three/examples/jsm/utils/BufferGeometryUtils.js';
 import type { SceneShape } from '../../../client/index';
 
@@ -49,10 +48,57 @@ function bevelSegmentsOf(bevel: number, error: number): number {
   return Math.min(angle > 0 ? Math.max(Math.ceil(Math.PI / 4 / angle), 1) : Infinity, kMostBevel);
 }
 
+/**
+ * The surface of a ball whose eight parts are moved apart to the corners. The triangles between the
+ * parts are the faces and the edges.
+ */
 function boxGeometry({ size, center = [0, 0, 0] }: Of<'box'>, error: number): BufferGeometry {
   const bevel = kBevel * Math.min(...size);
   const segments = bevelSegmentsOf(bevel, error);
-  return new RoundedBoxGeometry(...size, segments, bevel).translate(...center);
+  const [x, y, z] = size.map((length) => length / 2 - bevel) as [number, number, number];
+  const rows = bevelPoints(2, segments); // from the lower face to the upper one
+  const columns = bevelPoints(4, segments);
+  const positions = new Float32Array(3 * rows.length * columns.length);
+  const normals = new Float32Array(positions.length);
+  const triangles: number[] = [];
+  let at = 0;
+  rows.forEach(({ bevel: half, cos: down, sin: out }, row) => {
+    columns.forEach(({ bevel: quarter, cos, sin }, column) => {
+      const east = quarter === 0 || quarter === 3 ? x : -x;
+      const north = quarter < 2 ? y : -y;
+      const up = half === 1 ? z : -z;
+      normals.set([out * cos, out * sin, -down], at);
+      positions[at] = center[0] + east + bevel * out * cos;
+      positions[at + 1] = center[1] + north + bevel * out * sin;
+      positions[at + 2] = center[2] + up - bevel * down;
+      at += 3;
+      if (row + 1 === rows.length) return;
+      const here = row * columns.length + column;
+      const beside = row * columns.length + ((column + 1) % columns.length);
+      const above = columns.length;
+      triangles.push(here, beside, here + above, beside, beside + above, here + above);
+    });
+  });
+  // The lower and the upper face: at a pole, each quarter is one corner.
+  const top = (rows.length - 1) * columns.length;
+  const b = columns.length / 4;
+  const c = 2 * b;
+  const d = 3 * b;
+  triangles.push(0, c, b, 0, d, c, top, top + b, top + c, top, top + c, top + d);
+  const geometry = new BufferGeometry();
+  geometry.setAttribute('position', new BufferAttribute(positions, 3));
+  geometry.setAttribute('normal', new BufferAttribute(normals, 3));
+  geometry.setIndex(triangles);
+  return geometry;
+}
+
+/** Returns the points of this number of successive bevels, each a quarter of a circle. */
+function bevelPoints(bevels: number, segments: number) {
+  return Array.from({ length: bevels * (segments + 1) }, (_, point) => {
+    const bevel = Math.floor(point / (segments + 1));
+    const angle = (Math.PI / 2) * (bevel + (point % (segments + 1)) / segments);
+    return { bevel, cos: Math.cos(angle), sin: Math.sin(angle) };
+  });
 }
 
 function sphereGeometry(

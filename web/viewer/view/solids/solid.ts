@@ -100,10 +100,10 @@ export function setFinish(material: ShaderMaterial, finish: number): void {
 export function withRest(geometry: BufferGeometry, box: Box3): BufferGeometry {
   const positions = geometry.getAttribute('position');
   const middle = box.getCenter(new Vector3());
-  const toGrain = new Matrix4().setFromMatrix3(grainOf(box).toGrain);
-  const rest = geometry.clone().translate(-middle.x, -middle.y, -middle.z);
-  rest.getAttribute('position').applyMatrix4(toGrain);
-  geometry.setAttribute('rest', rest.getAttribute('position'));
+  const toRest = new Matrix4()
+    .setFromMatrix3(grainOf(box).toGrain)
+    .multiply(new Matrix4().makeTranslation(middle.negate()));
+  geometry.setAttribute('rest', positions.clone().applyMatrix4(toRest));
   geometry.setAttribute('before', positions);
   geometry.setAttribute('amount', new BufferAttribute(new Float32Array(positions.count), 1));
   return geometry;
