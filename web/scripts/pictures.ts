@@ -67,9 +67,9 @@ async function place(viewer: Viewer): Promise<void> {
   for (let n = 0; n < 8; ++n) await viewer.page.keyboard.press('ArrowLeft');
 }
 
-const kBath = { scene: 'sliding-vat-liquid', ticks: 150 };
+const kBath = { scene: 'sliding-vat-liquid', ticks: 150, view: 'liquid:fluid' };
 const kPictures: readonly Picture[] = [
-  { name: 'clear-liquid', ...kBath, view: 'liquid:fluid', look: { ...kDesktop, hasBar: true } },
+  { name: 'clear-liquid', ...kBath, look: { ...kDesktop, hasBar: true } },
   {
     name: 'bodies',
     scene: 'sliding-vat-solids',
