@@ -16,6 +16,18 @@ constexpr std::chrono::milliseconds kFailedPause(5000);
 
 }  // namespace
 
+void ClusterNode::separate_leaders() {
+  for (const NodeInfo& node : nodes_.seen_within(Lease::kOthersTime)) {
+    if (node.name < name()) return;  // the first node does it
+  }
+  const auto separate = [](Stream& stream, Stream& spare) {
+    const auto leader = stream.leader();
+    if (leader && spare.leader() == leader) spare.change_leader();
+  };
+  separate(streams_.logs[0], streams_.logs[1]);
+  separate(node_bucket_.stream(), spare_bucket_.stream());
+}
+
 void ClusterNode::look_at_change(std::uint64_t session) {
   if (leaving_) return;
   const auto entry = locator_.find(session);

@@ -53,6 +53,7 @@ ClusterNode::ClusterNode(ClusterSettings settings, Storage& storage, Clock& cloc
       lease_(clock),
       streams_(connection_),
       node_bucket_(connection_, "vat-nodes", settings_.entry_life.value_or(Lease::kOthersTime)),
+      spare_bucket_(connection_, "vat-spare-nodes", Lease::kOthersTime),
       nodes_(clock),
       locator_(connection_),
       saved_(connection_, *this, clock_),
@@ -162,6 +163,10 @@ void ClusterNode::listen() {
     if (auto node = read_node(entry.key, entry.value))
       nodes_.note(*std::move(node), entry.revision);
   }));
+  subscriptions_.push_back(spare_bucket_.watch([this](const Bucket::Entry& entry) {
+    auto node = read_node(entry.key, entry.value);
+    if (node) nodes_.note(*std::move(node), nodes_.revision_of(entry.key));
+  }));
   subscriptions_.push_back(connection_.subscribe(
       question_subject(name()),
       [this](const NatsMessage& question) { post([this, question] { answer(question); }); }));
@@ -244,6 +249,7 @@ void ClusterNode::tick() {
 void ClusterNode::refresh() {
   try {
     locator_.refresh();
+    separate_leaders();
   } catch (const NatsError&) {
     needs_refresh_ = true;
   }
@@ -266,19 +272,30 @@ void ClusterNode::renew(Time now) {
   if (!has_name_ || renewing_.exchange(true)) return;
   const auto finish = [this, now](const Stream::Appended& result) {
     if (const auto* error = std::get_if<NatsError>(&result)) {
-      if (error->kind() != NatsError::Kind::conflict) return note_failed_renewal(*error);
+      if (error->kind() != NatsError::Kind::conflict) return renew_spare(now);
       return post([this, error = *error] {
         check_name();
         note_failed_renewal(error);
       });
     }
     name_revision_ = std::get<std::uint64_t>(result);
-    is_renewed_ = true;
-    renewing_ = false;
-    if (lease_.confirm(now)) return;
-    if (!checking_.exchange(true)) post([this, now] { check_sessions(now); });
+    note_renewal(now);
   };
   node_bucket_.put(name(), write_node(describe()), name_revision_, finish);
+}
+
+void ClusterNode::renew_spare(Time now) {
+  spare_bucket_.put(name(), write_node(describe()), [this, now](const Stream::Appended& result) {
+    if (const auto* error = std::get_if<NatsError>(&result)) return note_failed_renewal(*error);
+    note_renewal(now);
+  });
+}
+
+void ClusterNode::note_renewal(Time sent) {
+  is_renewed_ = true;
+  renewing_ = false;
+  if (lease_.confirm(sent)) return;
+  if (!checking_.exchange(true)) post([this, sent] { check_sessions(sent); });
 }
 
 void ClusterNode::note_failed_renewal(const NatsError& error) {

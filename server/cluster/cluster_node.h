@@ -164,6 +164,9 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   void wait_for_tick();
   void tick();
   void renew(Time now);
+  /// Renews the lease in the spare bucket.
+  void renew_spare(Time now);
+  void note_renewal(Time sent);
   void note_failed_renewal(const NatsError& error);
   void look_at_change(std::uint64_t session);
   /// Looks at the sessions of this node, released ones, and those of silent nodes.
@@ -177,6 +180,8 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   bool has_session(const std::string& id);
   void remove_saved(std::uint64_t session);
   void refresh();
+  /// Lets different servers lead a stream and its spare stream.
+  void separate_leaders();
   void check_sessions(Time sent);
   void take(std::uint64_t session);
   bool is_silent(const std::string& node);
@@ -216,6 +221,7 @@ class ClusterNode final : public SessionReplicas, public SendGate {
   Lease lease_;
   ClusterStreams streams_;
   Bucket node_bucket_;
+  Bucket spare_bucket_;  // for renewals while no server leads `node_bucket_`
   NodeTable nodes_;
   SessionLocator locator_;
   SavedStore saved_;

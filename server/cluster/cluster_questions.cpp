@@ -60,7 +60,8 @@ void ClusterNode::ask_all(std::shared_ptr<Questions> questions, const std::strin
 
 void ClusterNode::ask(const std::shared_ptr<Questions>& questions, const std::string& node,
                       const std::string& question) {
-  connection_.request(question_subject(node), {}, question, settings_.answer_time.value_or(entry_age()),
+  connection_.request(question_subject(node), {}, question,
+                      settings_.answer_time.value_or(entry_age()),
                       [this, questions, node](const NatsConnection::Result& result) {
                         std::optional<std::string> next;
                         {

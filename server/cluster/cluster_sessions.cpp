@@ -62,11 +62,11 @@ std::uint64_t ClusterNode::add_session(const std::string& name, const std::strin
         write_records({EntriesRecord{{first}}, SettingsRecord{name, settings}});
     std::size_t part = 0;
     for (const LogPart& one : split_message(message)) {
-      place.last_message =
-          streams_.logs.append(log_subject(entry.number), one.bytes, place.last_message,
-                               {{kEpochHeader, "1"},
-                                {kWriteHeader, "1.0." + std::to_string(part++)},
-                                {kPartHeader, one.header}});
+      place.last_messages[0] =
+          streams_.logs[0].append(log_subject(entry.number, 0), one.bytes, place.last_messages[0],
+                                  {{kEpochHeader, "1"},
+                                   {kWriteHeader, "1.0." + std::to_string(part++)},
+                                   {kPartHeader, one.header}});
     }
   } catch (const NatsError&) {
     if (entry.revision > 0) locator_.remove(entry);
@@ -174,6 +174,7 @@ void ClusterNode::check_sessions(Time sent) {
 }
 
 bool ClusterNode::is_silent(const std::string& node) {
+  if (spare_bucket_.get(node)) return false;  // an entry ends soon after its renewal
   const auto entry = node_bucket_.get(node);
   if (!entry) return true;
   if (entry->revision == nodes_.revision_of(node)) {
@@ -205,7 +206,7 @@ void ClusterNode::take(std::uint64_t session) {
     SessionStream::Place place;
     place.session = session;
     place.epoch = entry.epoch;
-    place.last_message = image.last_message;
+    place.last_messages = image.last_messages;
     place.last_entry = image.entries.empty() ? 0 : image.entries.back().sequence;
     if (image.state) place.last_entry = std::max(place.last_entry, image.state->sequence);
     place.name = image.stored.name;

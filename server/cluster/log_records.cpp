@@ -138,6 +138,18 @@ std::optional<std::string> LogParts::take(const std::string& header, const std::
   return std::move(joined_);
 }
 
+namespace {
+
+/// Versions with one stream have written one number.
+LogEnds read_ends(const Json& json) {
+  if (!json.is_number()) return json.get<LogEnds>();
+  LogEnds ends{};
+  ends[0] = json.get<std::uint64_t>();
+  return ends;
+}
+
+}  // namespace
+
 std::string pack_state(const PackedState& packed) {
   const Json head{{"session", packed.state.session},
                   {"position", packed.state.position},
@@ -172,7 +184,7 @@ PackedState unpack_state(const std::string& bytes) {
     read.loaded = read_entry(json.at("loaded"));
     read.name = json.at("name");
     read.settings = json.at("settings");
-    read.covered = json.at("covered");
+    read.covered = read_ends(json.at("covered"));
     return read;
   });
   const auto rest = text_bytes(bytes, begin + head);
@@ -191,8 +203,8 @@ std::string write_manifest(const StateManifest& manifest) {
 
 StateManifest read_manifest(const std::string& bytes) {
   return read_record_json(bytes, [](const Json& json) {
-    return StateManifest{json.at("epoch"), json.at("chunks"), json.at("covered"),
-                         json.at("previous"), json.at("previous_covered")};
+    return StateManifest{json.at("epoch"), json.at("chunks"), read_ends(json.at("covered")),
+                         json.at("previous"), read_ends(json.at("previous_covered"))};
   });
 }
 

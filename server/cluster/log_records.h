@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -66,13 +67,18 @@ class LogParts {
   std::size_t next_ = 0;  // number of the next part
 };
 
+/// The messages of a log are in two streams.
+inline constexpr std::size_t kLogStreams = 2;
+/// Number of a message of the log in each stream; 0: none.
+using LogEnds = std::array<std::uint64_t, kLogStreams>;
+
 /// A checkpoint with all that a recovery needs beside the later log.
 struct PackedState {
   Checkpoint state;  ///< with the compressed state
   LogEntry loaded;   ///< entry that loaded the scene
   std::string name;
   std::string settings;
-  std::uint64_t covered = 0;  ///< number of the last log message before later entries
+  LogEnds covered{};  ///< the last log messages before later entries
 };
 /// Return the bytes of the state, and the state. unpack_state() throws StorageError (kind
 /// `corrupt`).
@@ -83,9 +89,9 @@ PackedState unpack_state(const std::string& bytes);
 struct StateManifest {
   std::uint64_t epoch = 0;
   std::vector<std::uint64_t> chunks;    ///< message numbers; empty: no state is stored
-  std::uint64_t covered = 0;            ///< see PackedState
+  LogEnds covered{};                    ///< see PackedState
   std::vector<std::uint64_t> previous;  ///< chunks of the state before
-  std::uint64_t previous_covered = 0;
+  LogEnds previous_covered{};
 };
 std::string write_manifest(const StateManifest& manifest);
 StateManifest read_manifest(const std::string& bytes);

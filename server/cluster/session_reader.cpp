@@ -1,8 +1,11 @@
 #include "server/cluster/session_reader.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <exception>
 #include <future>
+#include <map>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -19,22 +22,38 @@ NatsConnection::Headers headers_of(const LocatedSession& session) {
           {kWriteHeader, std::to_string(session.epoch) + ".0"}};
 }
 
-/// Appends a record after which the previous owner can append nothing.
-std::uint64_t end_previous_owner(ClusterStreams& streams, const LocatedSession& session) {
-  const std::string subject = log_subject(session.number);
+/// Appends a record after which the previous owner can append nothing to the stream.
+std::uint64_t end_previous_owner(ClusterStreams& streams, const LocatedSession& session,
+                                 std::size_t stream) {
+  const std::string subject = log_subject(session.number, stream);
   const std::string record = write_records({OwnerRecord{session.owner, session.epoch}});
   for (int attempt = 1;; ++attempt) {
-    const auto last = streams.logs.last(subject);
-    if (!last) {
+    const auto last = streams.logs[stream].last(subject);
+    if (!last && stream == 0) {
       throw StorageError(StorageError::Kind::corrupt,
                          "session s" + std::to_string(session.number) + " has no log");
     }
     try {
-      return streams.logs.append(subject, record, last->sequence, headers_of(session));
+      return streams.logs[stream].append(subject, record, last ? last->sequence : 0,
+                                         headers_of(session));
     } catch (const NatsError& error) {
       if (error.kind() != NatsError::Kind::conflict || attempt == kFenceAttempts) throw;
     }
   }
+}
+
+/// Returns the numbers of a write's identifier: the epoch, the write, and its part, if any.
+std::vector<std::uint64_t> order_of(const StoredMessage& message) {
+  std::vector<std::uint64_t> numbers;
+  const auto id = message.headers.find(kWriteHeader);
+  if (id == message.headers.end()) {
+    throw StorageError(StorageError::Kind::corrupt, "a message of a log has no identifier");
+  }
+  std::istringstream text(id->second);
+  for (std::string number; std::getline(text, number, '.');) {
+    numbers.push_back(std::strtoull(number.c_str(), nullptr, 10));
+  }
+  return numbers;
 }
 
 /// Reads the chunks, or returns nothing if one is missing.
@@ -106,32 +125,55 @@ SessionImage take_image(ClusterStreams& streams, const LocatedSession& session) 
   image.stored.number = session.number;
   image.stored.name = session.name;
   image.stored.instruction_set = session.instruction_set;
-  image.last_message = end_previous_owner(streams, session);
+  for (std::size_t i = 0; i < kLogStreams; ++i) {
+    image.last_messages[i] = end_previous_owner(streams, session, i);
+  }
   auto packed = take_state(streams, session, image);
-  std::uint64_t from = 1;
+  LogEnds after{};
   ImageReader reader{image, packed ? packed->state.sequence + 1 : 1};
   if (packed) {
-    from = packed->covered + 1;
+    after = packed->covered;
     image.stored.name = packed->name;
     image.stored.settings = packed->settings;
     if (packed->loaded.sequence < reader.first) image.entries.push_back(packed->loaded);
     image.state = std::move(packed->state);
   }
-  const std::string subject = log_subject(session.number);
   LogParts parts;
-  while (from <= image.last_message) {
-    auto message = streams.logs.next(subject, from);
-    if (!message) break;
-    from = message->sequence + 1;
-    const auto whole = parts.take(message->headers[kPartHeader], message->data);
+  for (StoredMessage& message : read_log(streams, session.number, after, image.last_messages)) {
+    const auto whole = parts.take(message.headers[kPartHeader], message.data);
     if (!whole) continue;
     for (const LogRecord& record : read_records(*whole)) std::visit(reader, record);
   }
-  if (from <= image.last_message) {
-    throw StorageError(StorageError::Kind::corrupt,
-                       "session s" + std::to_string(session.number) + ": its log is incomplete");
-  }
   return image;
+}
+
+LogEnds last_messages(ClusterStreams& streams, std::uint64_t session) {
+  LogEnds ends{};
+  for (std::size_t i = 0; i < kLogStreams; ++i) {
+    const auto last = streams.logs[i].last(log_subject(session, i));
+    if (last) ends[i] = last->sequence;
+  }
+  return ends;
+}
+
+std::vector<StoredMessage> read_log(ClusterStreams& streams, std::uint64_t session,
+                                    const LogEnds& after, const LogEnds& last) {
+  std::map<std::vector<std::uint64_t>, StoredMessage> ordered;
+  for (std::size_t i = 0; i < kLogStreams; ++i) {
+    for (std::uint64_t from = after[i] + 1; from <= last[i];) {
+      auto message = streams.logs[i].next(log_subject(session, i), from);
+      if (!message) {
+        throw StorageError(StorageError::Kind::corrupt,
+                           "session s" + std::to_string(session) + ": its log is incomplete");
+      }
+      from = message->sequence + 1;
+      ordered.emplace(order_of(*message), *std::move(message));
+    }
+  }
+  std::vector<StoredMessage> messages;
+  messages.reserve(ordered.size());
+  for (auto& [order, message] : ordered) messages.push_back(std::move(message));
+  return messages;
 }
 
 namespace {
@@ -167,7 +209,7 @@ void store_image(Storage& storage, const SessionImage& image) {
 void remove_messages(ClusterStreams& streams, std::uint64_t session) {
   streams.states.purge(chunk_subject(session));
   streams.states.purge(manifest_subject(session));
-  streams.logs.purge(log_subject(session));
+  for (std::size_t i = 0; i < kLogStreams; ++i) streams.logs[i].purge(log_subject(session, i));
 }
 
 }  // namespace vat

@@ -38,11 +38,11 @@ SessionStream::SessionStream(ClusterStreams& streams, const Lease& lease, Clock&
       states_(std::make_shared<StateWriter>(streams, session_, epoch_, std::move(place.manifest),
                                             place.manifest_message)),
       retry_timer_(clock.make_timer(executor_)),
-      last_message_(place.last_message),
+      last_messages_(place.last_messages),
       last_entry_(place.last_entry),
       name_(std::move(place.name)),
       settings_(std::move(place.settings)) {
-  written_.push_back({last_message_, last_entry_, 0});
+  written_.push_back({last_messages_, last_entry_, 0});
 }
 
 bool SessionStream::is_active() const {
@@ -125,6 +125,7 @@ void SessionStream::send() {
   std::string bytes;
   NatsConnection::Headers headers{{kEpochHeader, std::to_string(epoch_)}};
   std::uint64_t expected = 0;
+  std::size_t stream = 0;
   {
     const std::lock_guard lock(mutex_);
     if (ended_) return;
@@ -132,10 +133,11 @@ void SessionStream::send() {
     bytes = part.bytes;
     headers.emplace_back(kWriteHeader, sending_id_);
     headers.emplace_back(kPartHeader, part.header);
-    expected = last_message_;
+    stream = stream_;
+    expected = last_messages_[stream];
   }
-  streams_.logs.append(
-      log_subject(session_), bytes, expected, headers,
+  streams_.logs[stream].append(
+      log_subject(session_, stream), bytes, expected, headers,
       [self = shared_from_this()](const Stream::Appended& result) { self->sent(result); });
 }
 
@@ -146,6 +148,8 @@ void SessionStream::sent(const Stream::Appended& result) {
     case NatsError::Kind::conflict:
       return boost::asio::post(executor_, [self = shared_from_this()] { self->resolve(); });
     case NatsError::Kind::unreachable:
+      change_stream();
+      return retry();
     case NatsError::Kind::disconnected:
       return retry();
     case NatsError::Kind::refused:
@@ -157,7 +161,7 @@ void SessionStream::sent(const Stream::Appended& result) {
 bool SessionStream::stored_part(std::uint64_t message) {
   const std::lock_guard lock(mutex_);
   if (ended_ || sending_parts_.size() == 1) return false;
-  last_message_ = message;
+  last_messages_[stream_] = message;
   sending_parts_.pop_front();
   sending_id_ = std::to_string(epoch_) + "." + std::to_string(++writes_);
   return true;
@@ -170,9 +174,9 @@ void SessionStream::stored(std::uint64_t message) {
     const std::lock_guard lock(mutex_);
     if (ended_) return;
     for (const Item& item : sending_) last_entry_ = last_entry_of(item.record, last_entry_);
-    last_message_ = message;
+    last_messages_[stream_] = message;
     records_ += sending_.size();
-    written_.push_back({message, last_entry_, records_});
+    written_.push_back({last_messages_, last_entry_, records_});
     ++messages_since_state_;
     done.swap(sending_);
   }
@@ -190,22 +194,38 @@ void SessionStream::retry() {
   });
 }
 
+void SessionStream::change_stream() {
+  const std::lock_guard lock(mutex_);
+  stream_ = (stream_ + 1) % kLogStreams;
+}
+
 void SessionStream::resolve() {
   std::string id;
+  std::size_t stream = 0;
   std::uint64_t from = 0;
   {
     const std::lock_guard lock(mutex_);
     id = sending_id_;
-    from = last_message_ + 1;
+    stream = stream_;
+    from = last_messages_[stream] + 1;
   }
   // Messages of the next owner may follow the message.
   std::optional<StoredMessage> next;
   try {
-    next = streams_.logs.next(log_subject(session_), from);
+    next = streams_.logs[stream].next(log_subject(session_, stream), from);
   } catch (const NatsError&) {
+    change_stream();
     return retry();
   }
   if (next && next->headers[kWriteHeader] == id) return stored(next->sequence);
+  if (next && next->headers[kEpochHeader] == std::to_string(epoch_)) {
+    // An earlier message, whose acknowledgement came from the other stream.
+    {
+      const std::lock_guard lock(mutex_);
+      last_messages_[stream] = next->sequence;
+    }
+    return send();
+  }
   log_warning("session s{}: another node is its owner", session_);
   fail(StorageError::Kind::unreachable, true);
 }
@@ -252,7 +272,7 @@ std::uint64_t SessionStream::mark() const {
 
 void SessionStream::write_state(const Checkpoint& state, const LogEntry& loaded, std::uint64_t mark,
                                 bool always) {
-  PackedState packed{state, loaded, {}, {}, 0};
+  PackedState packed{state, loaded, {}, {}, {}};
   {
     const std::lock_guard lock(mutex_);
     if (ended_) return;
@@ -262,7 +282,7 @@ void SessionStream::write_state(const Checkpoint& state, const LogEntry& loaded,
       return one.entry <= state.sequence && one.records <= mark;
     };
     while (written_.size() > 1 && is_covered(written_[1])) written_.pop_front();
-    packed.covered = written_.front().message;
+    packed.covered = written_.front().messages;
     messages_since_state_ = written_.size() - 1;
   }
   states_->write(std::move(packed), always);

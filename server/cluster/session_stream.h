@@ -19,16 +19,17 @@ namespace vat {
 
 /// Replica of a session in the streams of a cluster, written by the owner of the session. At most
 /// one message of a session is being stored. Records that arrive meanwhile share the next message.
-/// A message requires that the previous message is the last of the session's log. If another node
-/// has appended one, this node is no longer the owner. Create it with std::make_shared.
+/// A message requires that the stream's last message of the session is one of this node. If another
+/// node has appended one, this node is no longer the owner. If a stream does not answer, the
+/// message goes to the other one, with the same identifier. Create it with std::make_shared.
 class SessionStream final : public SessionReplica,
                             public std::enable_shared_from_this<SessionStream> {
  public:
   struct Place {
     std::uint64_t session = 0;
     std::uint64_t epoch = 0;
-    std::uint64_t last_message = 0;  ///< number of the log's last message; 0: none
-    std::uint64_t last_entry = 0;    ///< sequence of the log's last entry
+    LogEnds last_messages{};       ///< last messages of the log
+    std::uint64_t last_entry = 0;  ///< sequence of the log's last entry
     std::string name;
     std::string settings;
     StateManifest manifest;
@@ -61,9 +62,10 @@ class SessionStream final : public SessionReplica,
     LogRecord record;
     Done done;
   };
-  /// Number of a log message, the last entry up to its end, and the count of records up to its end.
+  /// Last messages after a message, the last entry up to its end, and the count of records up to
+  /// it.
   struct Written {
-    std::uint64_t message = 0;
+    LogEnds messages{};
     std::uint64_t entry = 0;
     std::uint64_t records = 0;
   };
@@ -76,6 +78,8 @@ class SessionStream final : public SessionReplica,
   void stored(std::uint64_t message);
   /// Notes that a part of the message is stored. Returns false if it was the last one.
   bool stored_part(std::uint64_t message);
+  /// Continues with the other stream.
+  void change_stream();
   /// Finds out whether the message was stored, although its acknowledgement is missing. Waits.
   void resolve();
   void retry();
@@ -99,7 +103,8 @@ class SessionStream final : public SessionReplica,
   std::deque<Item> sending_;           // records of the message that is being stored
   std::deque<LogPart> sending_parts_;  // the first one is being stored
   std::string sending_id_;
-  std::uint64_t last_message_;
+  std::size_t stream_ = 0;  // index of the stream that is written
+  LogEnds last_messages_;
   std::uint64_t last_entry_;
   // The last message that the newest state covers, and the later ones.
   std::deque<Written> written_;

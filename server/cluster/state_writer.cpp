@@ -129,7 +129,9 @@ void StateWriter::purge(const StateManifest& manifest, std::uint64_t sequence) {
   const std::uint64_t first = *std::ranges::min_element(manifest.previous);
   streams_.states.purge_later(chunk_subject(session_), first);
   streams_.states.purge_later(manifest_subject(session_), sequence);
-  streams_.logs.purge_later(log_subject(session_), manifest.previous_covered + 1);
+  for (std::size_t i = 0; i < kLogStreams; ++i) {
+    streams_.logs[i].purge_later(log_subject(session_, i), manifest.previous_covered[i] + 1);
+  }
 }
 
 void StateWriter::end() {

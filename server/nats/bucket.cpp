@@ -63,6 +63,11 @@ void Bucket::put(const std::string& key, const std::string& value, std::uint64_t
   stream_.append(subject(key), value, revision, {}, std::move(done));
 }
 
+void Bucket::put(const std::string& key, const std::string& value,
+                 std::function<void(Stream::Appended)> done) {
+  stream_.append(subject(key), value, std::move(done));
+}
+
 std::uint64_t Bucket::remove(const std::string& key, std::uint64_t revision) {
   return stream_.append(subject(key), {}, revision, {{kOperation, "DEL"}});
 }

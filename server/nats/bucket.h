@@ -46,6 +46,9 @@ class Bucket {
   /// As put(), but calls `done` with the new revision.
   void put(const std::string& key, const std::string& value, std::uint64_t revision,
            std::function<void(Stream::Appended)> done);
+  /// As above, but replaces any value.
+  void put(const std::string& key, const std::string& value,
+           std::function<void(Stream::Appended)> done);
   /// Removes the value if the key has the revision. NATS then stores a mark of the removal. Returns
   /// the revision of this mark.
   std::uint64_t remove(const std::string& key, std::uint64_t revision);
@@ -61,6 +64,8 @@ class Bucket {
   void drop_mark(const std::string& key, std::uint64_t revision);
   /// Removes the values of all keys that match the pattern, and their revisions.
   void purge(const std::string& pattern);
+
+  Stream& stream() { return stream_; }
 
   /// Calls `handler` for each change after the call. Changes during a loss of the connection are
   /// missing; read all() after it.

@@ -261,6 +261,21 @@ std::uint64_t Stream::last_sequence() {
   return answer.at("state").at("last_seq");
 }
 
+std::optional<std::string> Stream::leader() {
+  const Json answer = call("INFO", Json::object());
+  if (auto error = find_stream_error(answer, name_)) throw NatsError(*error);
+  const auto cluster = answer.find("cluster");
+  if (cluster == answer.end() || !cluster->contains("replicas")) return {};
+  const std::string leader = cluster->value("leader", std::string());
+  if (leader.empty()) return {};
+  return leader;
+}
+
+void Stream::change_leader() {
+  const Json answer = call("LEADER.STEPDOWN", Json::object());
+  if (auto error = find_stream_error(answer, name_)) throw NatsError(*error);
+}
+
 std::vector<std::string> Stream::subjects(const std::string& pattern) {
   std::vector<std::string> subjects;
   for (;;) {  // the server lists at most some thousands at once

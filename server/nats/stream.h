@@ -65,6 +65,11 @@ class Stream {
   std::optional<StoredMessage> next(const std::string& subject, std::uint64_t from);
   /// Returns the sequence of the newest message that the stream has had; 0: none.
   std::uint64_t last_sequence();
+  /// Returns the name of the server that leads the stream; nothing if there is only one server, or
+  /// if none leads it.
+  std::optional<std::string> leader();
+  /// Lets another server lead the stream.
+  void change_leader();
   /// Returns the subjects that have messages.
   std::vector<std::string> subjects(const std::string& pattern);
   /// Removes the subject's messages before this sequence. The subject may contain wildcards.

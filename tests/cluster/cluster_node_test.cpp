@@ -75,6 +75,9 @@ class ClusterNodeTest : public testing::Test {
     return settings;
   }
 
+  void remove_stream(const std::string& name) {
+    connection.request("$JS.API.STREAM.DELETE." + name, "", milliseconds(5000));
+  }
   /// Expects that the next renewal fails, and that another one follows before the interval ends.
   void expect_repeated_renewal() {
     std::atomic<int> renewals = 0;
@@ -106,8 +109,24 @@ TEST_F(ClusterNodeTest, RepeatsARenewalSoonAfterAConflict) {
 }
 
 TEST_F(ClusterNodeTest, RepeatsARenewalSoonAfterAFailure) {
-  connection.request("$JS.API.STREAM.DELETE.KV_vat-nodes", "", milliseconds(5000));
+  remove_stream("KV_vat-nodes");
+  remove_stream("KV_vat-spare-nodes");
   expect_repeated_renewal();
+}
+
+TEST_F(ClusterNodeTest, RenewsInTheSpareBucketIfTheOtherDoesNotAnswer) {
+  remove_stream("KV_vat-nodes");
+  std::atomic<int> renewals = 0;
+  const auto subscription =
+      connection.subscribe("$KV.vat-spare-nodes.a", [&](const NatsMessage&) { ++renewals; });
+  connection.flush(milliseconds(5000));
+  const int count = static_cast<int>(2 * Lease::kOthersTime / Lease::kLeastRenewal);
+  for (int i = 1; i <= count; ++i) {
+    clock.advance(Lease::kLeastRenewal);
+    ASSERT_TRUE(wait_until([&] { return renewals == i; }));
+    // The node is in its own list of nodes by the renewals that it receives.
+    ASSERT_TRUE(wait_until([&] { return node.is_open() && !node.urls().empty(); }));
+  }
 }
 
 }  // namespace

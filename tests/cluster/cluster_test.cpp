@@ -8,6 +8,7 @@
 #include "server/cluster/cluster_streams.h"
 #include "server/cluster/lease.h"
 #include "server/cluster/log_records.h"
+#include "server/cluster/session_reader.h"
 #include "server/nats/bucket.h"
 #include "tests/cluster/nodes.h"
 #include "tests/recovery/load.h"
@@ -34,11 +35,9 @@ ClusterPast read_cluster_log(const std::vector<std::string>& urls) {
   ClusterPast read;
   std::vector<LogEntry>& log = read.past.log;
   std::uint64_t position = 0;
-  std::uint64_t from = 1;
   LogParts parts;
-  while (auto message = streams.logs.next(log_subject(1), from)) {
-    from = message->sequence + 1;
-    const auto whole = parts.take(message->headers[kPartHeader], message->data);
+  for (StoredMessage& message : read_log(streams, 1, {}, last_messages(streams, 1))) {
+    const auto whole = parts.take(message.headers[kPartHeader], message.data);
     if (!whole) continue;
     for (const LogRecord& record : read_records(*whole)) {
       if (const auto* entries = std::get_if<EntriesRecord>(&record)) {
@@ -195,6 +194,60 @@ TEST(Cluster, AStoppedNodeHandsItsSessionOver) {
   back.client.result("world.set_gravity", kGravity);
   joined.client.close();
   EXPECT_EQ(stopped.get(), 0);
+}
+
+std::string leader_of(Stream& stream) {
+  std::optional<std::string> leader;
+  EXPECT_TRUE(wait_until([&] { return (leader = stream.leader()).has_value(); }));
+  return *leader;
+}
+
+/// Lets this server lead the stream.
+void let_lead(const std::string& server, Stream& stream) {
+  ASSERT_TRUE(wait_until([&] {
+    if (leader_of(stream) == server) return true;
+    stream.change_leader();
+    return false;
+  }));
+}
+
+// NATS needs at least 4 s for the election of a leader, and a lease ends after 2 s.
+TEST(Cluster, CommandsDoNotWaitForAnElection) {
+  Nodes nodes(1, {"--checkpoint-seconds", "3600"});  // the complete log remains
+  auto joined = nodes.join(kSession, "a");
+  NatsConnection connection({nodes.nats().urls(), "test", {}, {}, {}, {}});
+  ClusterStreams streams(connection);
+  Stream& log = streams.logs[0];
+  Stream& spare_log = streams.logs[1];
+  Bucket renewals(connection, "vat-nodes", Lease::kOthersTime);
+  Bucket spare_renewals(connection, "vat-spare-nodes", Lease::kOthersTime);
+  const std::string server = leader_of(log);
+  let_lead(server, renewals.stream());
+  let_lead(server, spare_log);
+  EXPECT_TRUE(wait_until([&] {
+    return leader_of(spare_log) != server && leader_of(spare_renewals.stream()) != server;
+  })) << "the node lets another server lead the spare streams";
+
+  nodes.nats().kill(static_cast<std::size_t>(server.back() - '0'));
+  std::size_t answered = 0;
+  const auto election = std::async(std::launch::async, [&] {
+    leader_of(log);
+    leader_of(renewals.stream());
+  });
+  while (election.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
+    const auto begin = std::chrono::steady_clock::now();
+    const Json reply = joined.client.call("world.set_gravity", kGravity);
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(2));
+    if (reply.contains("result")) {
+      ++answered;
+    } else {  // the node is connecting to another server
+      EXPECT_EQ(reply.at("error").at("data").at("kind"), "storage_failed");
+    }
+  }
+  EXPECT_GT(answered, 0U);
+  EXPECT_GT(last_messages(streams, 1)[1], 0U);
+  const ClusterPast past = read_cluster_log(nodes.nats().urls());
+  EXPECT_GE(past.past.log.size(), answered);
 }
 
 TEST(Cluster, WithoutNatsCommandsAreRefusedAndThenTheSessionResumes) {

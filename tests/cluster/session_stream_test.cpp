@@ -68,7 +68,7 @@ class SessionStreamTest : public testing::Test {
   static SessionStream::Place place_after(const SessionImage& image, std::uint64_t epoch) {
     SessionStream::Place place;
     place.epoch = epoch;
-    place.last_message = image.last_message;
+    place.last_messages = image.last_messages;
     place.last_entry = image.entries.back().sequence;
     place.manifest = image.manifest;
     place.manifest_message = image.manifest_message;
@@ -128,7 +128,7 @@ TEST_F(SessionStreamTest, ALongMessageIsStoredInParts) {
   const std::vector<std::uint8_t> bytes = make_bytes(3 * LogPart::kBytes);
   const std::string params = Json(to_base64(bytes)).dump();
   EXPECT_EQ(append(*stream, {make_entry(1), make_entry(2, params)}), Failure());
-  EXPECT_GT(streams.logs.last_sequence(), 3U);
+  EXPECT_GT(streams.logs[0].last_sequence(), 3U);
   EXPECT_EQ(append(*stream, {make_entry(3)}), Failure());
   const SessionImage image = take(2);
   EXPECT_THAT(sequences_of(image), ElementsAre(1, 2, 3));
@@ -139,13 +139,13 @@ TEST_F(SessionStreamTest, ALongMessageIsStoredInParts) {
 TEST_F(SessionStreamTest, APartWithoutTheRestIsIgnored) {
   const auto stream = create();
   EXPECT_EQ(append(*stream, {make_entry(1)}), Failure());
-  const auto last = streams.logs.last(log_subject(kSession));
+  const auto last = streams.logs[0].last(log_subject(kSession, 0));
   ASSERT_TRUE(last);
   const std::string message =
       write_records({EntriesRecord{{make_entry(2, to_base64(make_bytes(2 * LogPart::kBytes)))}}});
   const LogPart part = split_message(message).front();
-  streams.logs.append(log_subject(kSession), part.bytes, last->sequence,
-                      {{kPartHeader, part.header}});
+  streams.logs[0].append(log_subject(kSession, 0), part.bytes, last->sequence,
+                         {{kEpochHeader, "1"}, {kWriteHeader, "1.2"}, {kPartHeader, part.header}});
   const SessionImage image = take(2);
   EXPECT_THAT(sequences_of(image), ElementsAre(1));
   const auto next = open(place_after(image, 2));
@@ -192,12 +192,45 @@ TEST_F(SessionStreamTest, ThePreviousOwnerStoresNothingAfterATakeOver) {
 TEST_F(SessionStreamTest, AMessageBeforeATakeOverCountsAsStored) {
   const auto old = create();
   // As if the acknowledgement of the first message was lost, and the stream sends it again.
-  streams.logs.append(log_subject(kSession), write_records({EntriesRecord{{make_entry(1)}}}), 0,
-                      {{kEpochHeader, "1"}, {kWriteHeader, "1.1"}});
+  streams.logs[0].append(log_subject(kSession, 0), write_records({EntriesRecord{{make_entry(1)}}}),
+                         0, {{kEpochHeader, "1"}, {kWriteHeader, "1.1"}});
   EXPECT_THAT(sequences_of(take(2)), ElementsAre(1));
   EXPECT_EQ(append(*old, {make_entry(1)}), Failure());
   EXPECT_EQ(append(*old, {make_entry(2)}), StorageError::Kind::unreachable);
   EXPECT_THAT(sequences_of(take(3)), ElementsAre(1));
+}
+
+// As if the owner had changed between the streams, without the acknowledgement of the write 1.2.
+TEST_F(SessionStreamTest, TwoStreamsAreReadInTheOrderOfTheWrites) {
+  const std::vector<std::pair<std::size_t, std::uint64_t>> writes{{0, 1}, {0, 2}, {1, 2},
+                                                                  {1, 3}, {0, 4}, {1, 10}};
+  LogEnds last{};
+  for (const auto& [stream, write] : writes) {
+    last[stream] = streams.logs[stream].append(
+        log_subject(kSession, stream), write_records({EntriesRecord{{make_entry(write)}}}),
+        last[stream], {{kEpochHeader, "1"}, {kWriteHeader, "1." + std::to_string(write)}});
+  }
+  EXPECT_EQ(last_messages(streams, kSession), last);
+  const SessionImage image = take(2);
+  EXPECT_THAT(sequences_of(image), ElementsAre(1, 2, 3, 4, 10));
+  for (std::size_t i = 0; i < kLogStreams; ++i) EXPECT_GT(image.last_messages[i], last[i]);
+  // The next owner needs no messages before a state.
+  const auto next = open(place_after(image, 2));
+  write_state(*next, 10, 1000);
+  ASSERT_EQ(append(*next, {make_entry(11)}), Failure());
+  EXPECT_THAT(sequences_of(take(3)), ElementsAre(1, 11));
+}
+
+TEST_F(SessionStreamTest, AnEarlierMessageOfTheOwnerInAStreamIsNoConflict) {
+  const auto stream = create();
+  for (const char* const id : {"1.0.0", "1.0.1"}) {
+    streams.logs[0].append(log_subject(kSession, 0), write_records({ReachedRecord{1}}),
+                           last_messages(streams, kSession)[0],
+                           {{kEpochHeader, "1"}, {kWriteHeader, id}});
+  }
+  EXPECT_EQ(append(*stream, {make_entry(1)}), Failure());
+  EXPECT_EQ(lost, 0);
+  EXPECT_THAT(sequences_of(take(2)), ElementsAre(1));
 }
 
 TEST_F(SessionStreamTest, AFailedRenamingHasItsReason) {
@@ -249,7 +282,7 @@ TEST_F(SessionStreamTest, MessagesBeforeTheOlderOfTwoStatesAreRemoved) {
     write_state(*stream, i, 1000);
   }
   EXPECT_TRUE(wait_until([&] {
-    const auto first = streams.logs.next(log_subject(kSession), 1);
+    const auto first = streams.logs[0].next(log_subject(kSession, 0), 1);
     return first && first->sequence >= 8;
   }));
   const SessionImage image = take(2);
