@@ -51,6 +51,8 @@ void add_report(const AdvanceReport& step, AdvanceReport& sum) {
   sum.iterations.damping += step.iterations.damping;
   sum.iterations.springs += step.iterations.springs;
   sum.iterations.elongation += step.iterations.elongation;
+  sum.iterations.velocities += step.iterations.velocities;
+  sum.iterations.places += step.iterations.places;
   sum.device_steps += step.device_steps;
   if (step.device_error) sum.device_error = step.device_error;
   if (step.steps > 0) sum.count_steps(step.steps, step.least_step, step.greatest_step);

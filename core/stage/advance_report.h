@@ -34,6 +34,8 @@ struct IterationCounts {
   std::uint64_t damping = 0;     ///< products with the damping matrix
   std::uint64_t springs = 0;     ///< passes over the implicit springs of a body
   std::uint64_t elongation = 0;  ///< sweeps over the springs with limited elongation
+  std::uint64_t velocities = 0;  ///< of the solves for velocities of incompressible liquids
+  std::uint64_t places = 0;      ///< of the solves for positions of incompressible liquids
 };
 
 /// The result of one call of advance().

@@ -21,7 +21,7 @@ struct TolerancePoint {
   Real energy_gain = 0;          ///< maximum rise of the total energy above its first value [J]
   Real released = 0;             ///< maximum fall of the gravitational energy [J]
   std::uint64_t steps = 0;       ///< including undone ones
-  Real velocity_iterations = 0;  ///< per step, mean over the last steps of the ticks
+  Real velocity_iterations = 0;  ///< per step, mean over all steps
   Real position_iterations = 0;  ///< the same
   double seconds = 0;            ///< wall time of the steps
 

@@ -1,6 +1,7 @@
 #include "core/device/incompressible/incompressible_method.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -194,6 +195,8 @@ bool IncompressibleMethod::take_step(const StepPart& step, AdvanceReport& report
   correct_density(p);
   program_.run("check", model_->liquid_count, p, now_.motion.position, now_.motion.velocity,
                particles_.counters.buffer);
+  report.iterations.velocities += static_cast<std::uint64_t>(report_.velocities.iterations);
+  report.iterations.places += static_cast<std::uint64_t>(report_.places.iterations);
   report.count_evaluation(model_->particle_count);
   report.count_steps(1, step.length, step.length);
   return particles_.counters.read().faults == 0;

@@ -2,6 +2,7 @@
 #include "core/liquid/pairs/scratch.h"
 
 #include <algorithm>
+#include <cstdint>
 
 #include "core/guard/enforce_walls.h"
 #include "core/liquid/gas/liquid.h"
@@ -164,7 +165,10 @@ void recall_pressure(StepContext& c) {
 
 void project_velocities(const ForceModel& f, State& state, Real time, Real dt) {
   VolumeSolve solve(f, state.now, dt, true);
-  state.volume.velocities = solve.project_velocities(mean_wall_velocity(f.model, time, dt));
+  SolveReport& report = state.volume.velocities;
+  report = solve.project_velocities(mean_wall_velocity(f.model, time, dt));
+  if (f.report == nullptr) return;
+  f.report->iterations.velocities += static_cast<std::uint64_t>(report.iterations);
 }
 
 void correct_density(const ForceModel& f, State& state, Real time) {
@@ -184,7 +188,10 @@ void correct_density(const ForceModel& f, State& state, Real time) {
     if (is_last || f.work.of<LiquidScratch>().too_many_pairs) return;
     constexpr Real kUnit = 1;  // shifts take no time
     const bool mean_is_met = report.mean <= wanted.density_tolerance;
-    report.iterations += VolumeSolve(f, now, kUnit, false).shift_places(mean_is_met);
+    const int iterations = VolumeSolve(f, now, kUnit, false).shift_places(mean_is_met);
+    report.iterations += iterations;
+    if (f.report == nullptr) continue;
+    f.report->iterations.places += static_cast<std::uint64_t>(iterations);
   }
 }
 
