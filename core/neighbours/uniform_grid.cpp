@@ -51,7 +51,7 @@ void UniformGrid::build(std::span<const Vec3> points, Real cell_size, TaskRunner
   VAT_CHECK(cell_size > 0);
   choose_cells(points, cell_size, runner);
   const std::size_t cell_count = std::size_t{count_[0]} * count_[1] * count_[2];
-  resize_closely(cell_begin_, cell_count + 1);
+  resize_closely(cell_begin_, cell_count + 2);
   VAT_CHECK(points.size() < std::numeric_limits<Index>::max());
   std::ranges::fill(cell_begin_, 0);
   resize_closely(cell_of_, points.size());
@@ -66,17 +66,16 @@ void UniformGrid::build(std::span<const Vec3> points, Real cell_size, TaskRunner
       cell_of_[i] = (z * count_[1] + y) * count_[0] + x;
     }
   });
-  for (const Index cell : cell_of_) ++cell_begin_[cell + 1];
-  for (std::size_t cell = 0; cell < cell_count; ++cell) {
-    cell_begin_[cell + 1] += cell_begin_[cell];
-  }
+  // The filling moves each beginning to its end, which is the beginning of the next cell. Counts
+  // and beginnings are therefore stored one element further.
+  for (const Index cell : cell_of_) ++cell_begin_[cell + 2];
+  Index begin = 0;
+  for (Index& count : std::span(cell_begin_).subspan(1, cell_count)) count = begin += count;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    order_[cell_begin_[cell_of_[i]]++] = static_cast<Index>(i);
+    order_[cell_begin_[cell_of_[i] + 1]++] = static_cast<Index>(i);
   }
-  VAT_CHECK(points.empty() || cell_begin_[cell_count - 1] == points.size());
-  // The filling moved each beginning to its end. Move them back by one cell.
-  std::copy_backward(cell_begin_.begin(), cell_begin_.end() - 2, cell_begin_.end() - 1);
-  cell_begin_[0] = 0;
+  cell_begin_.pop_back();
+  VAT_CHECK(cell_begin_.back() == points.size());
 }
 
 }  // namespace vat

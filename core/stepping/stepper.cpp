@@ -143,7 +143,7 @@ Real Stepper::find_allowed_step(const StepInput& input, Real start) {
   const Numerics& numerics = input.numerics();
   if (numerics.control == StepControl::local) {
     return greatest_base_step(f, state, input.step_bounds, input.guard_bounds,
-                              present_steps_.pressures);
+                              present_steps_.liquid_scratch);
   }
   // A step is at most twice as long as the last one.
   const Real last = state.history.step;

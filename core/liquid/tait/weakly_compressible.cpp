@@ -46,13 +46,10 @@ class NearWalls {
 /// corner, must not exceed the density at rest. A single particle then has no pressure, and the
 /// mirror reflects it in a corner as at a face. With their pressure, it would be on a spring of up
 /// to six times c / h, and the step allows for half of that.
-Real own_excess(const StepContext& c, const VatMotion& motion, const NearWalls& walls, Index i,
-                const Vec3& place) {
+Real own_excess(const StepContext& c, const VatMotion& motion, Index i, const Vec3& place) {
   const LiquidModel& liquid = liquid_of(c.model, i);
   const Real volume = c.model.rest_volume[i];
   Real own = liquid.kernel.value(0);
-  // An image adds at most the value at distance 0, and n walls have at most 2^n - 1 images.
-  if (volume * own * static_cast<Real>(1 << walls.count(place)) <= 1) return 0;
   // An image is as far beyond a wall, edge or corner as the particle is inside.
   for_each_mirror(c.model, motion, place, liquid.support_radius / 2, [&](const Mirror& mirror) {
     const Real r = (place - mirror.place(place)).norm();
@@ -104,13 +101,18 @@ void compute_tait_density(StepContext& c) {
       by_material(model, [&](const LiquidModel& liquid) { return scale_factor(model, liquid); });
   const auto rest_density =
       by_material(model, [](const LiquidModel& liquid) { return liquid.rest_density; });
+  const auto own_value =
+      by_material(model, [](const LiquidModel& liquid) { return liquid.kernel.value(0); });
   const auto set_density = [&](const TargetCluster& cluster, Index slot, const Real* sums) {
     const Index i = order[slot];
     const Index material = model.material[i];
     Real sum = *sums * factor[material];
     if (cluster.has_mirrored && sum > 1) {
       const Vec3 place(points.x[slot], points.y[slot], points.z[slot]);
-      if (walls.count(place) > 0) sum -= own_excess(c, motion, walls, i, place);
+      const int near = walls.count(place);
+      // An image adds at most the value at distance 0, and n walls have at most 2^n - 1 images.
+      const Real most = model.rest_volume[i] * own_value[material] * static_cast<Real>(1 << near);
+      if (near > 0 && most > 1) sum -= own_excess(c, motion, i, place);
     }
     buffers.density[i] = rest_density[material] * sum;
   };

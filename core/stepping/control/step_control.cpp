@@ -4,8 +4,10 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "core/contact/contacts.h"
 #include "core/damping/damping_solve.h"
@@ -184,20 +186,39 @@ void limit_rigid_travel(const PresentBounds& present, std::vector<Real>& steps) 
   }
 }
 
-Vec3 mean_liquid_velocity(const Model& model, const Configuration& now) {
-  Vec3 sum = Vec3::Zero();
-  for (Index i = 0; i < model.liquid_count; ++i) sum += now.velocity[i];
-  return model.liquid_count > 0 ? Vec3(sum / model.liquid_count) : sum;
+Vec3 mean_liquid_velocity(const PresentBounds& present, TaskRunner* runner,
+                          std::vector<Vec3>& parts) {
+  const Index count = present.model.liquid_count;
+  parts.resize(block_count(count));
+  for_blocks(runner, count, [&](std::size_t begin, std::size_t end) {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t i = begin; i < end; ++i) sum += present.state.now.velocity[i];
+    parts[begin / kBlockSize] = sum;
+  });
+  Vec3 total = Vec3::Zero();
+  for (const Vec3& part : parts) total += part;
+  return count > 0 ? Vec3(total / count) : total;
 }
 
-/// The pressure that few particles of a liquid exceed; see lasting_rank().
-Real lasting_pressure(const std::vector<Real>& pressure, const IndexRange& particles,
-                      std::vector<Real>& scratch) {
-  if (particles.size() == 0) return 0;
-  scratch.assign(pressure.begin() + particles.begin, pressure.begin() + particles.end);
-  const auto place = scratch.begin() + static_cast<std::ptrdiff_t>(lasting_rank(particles.size()));
-  std::ranges::nth_element(scratch, place);
-  return *place;
+/// Returns the maximum squared speed relative to `mean` and the maximum acceleration.
+std::array<Real, 2> greatest_motion(const PresentBounds& present, const IndexRange& particles,
+                                    const Vec3& mean, TaskRunner* runner,
+                                    std::vector<std::array<Real, 2>>& parts) {
+  parts.resize(block_count(particles.size()));
+  const auto join = [](std::array<Real, 2>& most, Real speed2, Real acceleration) {
+    most = {std::max(most[0], speed2), std::max(most[1], acceleration)};
+  };
+  for_blocks(runner, particles.size(), [&](std::size_t begin, std::size_t end) {
+    std::array<Real, 2> most{};
+    for (std::size_t k = begin; k < end; ++k) {
+      const Index i = particles.begin + static_cast<Index>(k);
+      join(most, (present.state.now.velocity[i] - mean).squaredNorm(), present.acceleration(i));
+    }
+    parts[begin / kBlockSize] = most;
+  });
+  std::array<Real, 2> most{};
+  for (const auto& [speed2, acceleration] : parts) join(most, speed2, acceleration);
+  return most;
 }
 
 /// An acceleration of coupled liquids if the forces are not known.
@@ -207,22 +228,21 @@ Real unknown_acceleration(const PresentBounds& present) {
   return is_local && present.model.is_coupled && scene.forces.gravity ? scene.gravity.norm() : 0;
 }
 
-Real liquid_step(const PresentBounds& present, std::vector<Real>& scratch) {
-  const Vec3 mean = mean_liquid_velocity(present.model, present.state.now);
+Real liquid_step(const PresentBounds& present, TaskRunner* runner, LiquidStepScratch& scratch) {
+  const Vec3 mean = mean_liquid_velocity(present, runner, scratch.velocities);
   Real step = kInfinity;
   for (std::size_t b = 0; b < present.model.bodies.size(); ++b) {
     const ModelBody& body = present.model.bodies[b];
     if (body.kind != BodyKind::liquid) continue;
-    Real speed2 = 0;
+    const auto [speed2, acceleration] =
+        greatest_motion(present, body.particles, mean, runner, scratch.motions);
     LiquidMotion motion;
-    motion.acceleration = unknown_acceleration(present);
-    for (Index i = body.particles.begin; i < body.particles.end; ++i) {
-      speed2 = std::max(speed2, (present.state.now.velocity[i] - mean).squaredNorm());
-      motion.acceleration = std::max(motion.acceleration, present.acceleration(i));
-    }
     motion.speed = std::sqrt(speed2);
+    motion.acceleration = std::max(unknown_acceleration(present), acceleration);
     if (present.model.is_incompressible) {
-      motion.pressure = lasting_pressure(present.state.now.pressure, body.particles, scratch);
+      const std::span<const Real> pressures = present.state.now.pressure;
+      motion.pressure = lasting_pressure(
+          pressures.subspan(body.particles.begin, body.particles.size()), scratch.pressures);
     }
     step = std::min(step, step_of_liquid(present.model, b, motion));
   }
@@ -269,11 +289,11 @@ Real greatest_approach(const PresentBounds& present, Real longest) {
 }  // namespace
 
 Real greatest_base_step(const ForceModel& f, const State& state, const StepBounds& bounds,
-                        const GuardBounds& guard, std::vector<Real>& pressures) {
+                        const GuardBounds& guard, LiquidStepScratch& scratch) {
   const Model& model = f.model;
   Real step = bounds.scene_step;
   if (model.is_coupled) {
-    step = std::min(step, liquid_step({model, state, bounds, guard}, pressures));
+    step = std::min(step, liquid_step({model, state, bounds, guard}, f.runner, scratch));
   }
   for (const Grab& grab : f.controls.grabs) {
     step = std::min(step, safe_step(model.scene.numerics, {grab.stiffness / grab.held_mass,
@@ -305,7 +325,7 @@ void find_present_steps(const ForceModel& f, State& state, Real time, Real longe
   steps.rigid.resize(model.rigid_bodies.size());
   limit_free_travel(present, f.runner, steps.particle);
   limit_rigid_travel(present, steps.rigid);
-  steps.liquid = liquid_step(present, steps.pressures);
+  steps.liquid = liquid_step(present, f.runner, steps.liquid_scratch);
   limit_grabs(f, steps);
   const Real approach = model.contact_reach > 0 ? greatest_approach(present, longest) : 0;
   if (model.contact_reach > 0 && !contact_buffers.contacts.is_current(context, approach)) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "core/evaluation/force_model.h"
@@ -16,13 +17,20 @@ StepBounds find_step_bounds(const Model& model);
 /// gravity on liquids have changed.
 StepBounds step_bounds_of_moved(const Model& model, std::size_t body, StepBounds bounds);
 
+/// Buffers for the step length of liquids.
+struct LiquidStepScratch {
+  std::vector<Vec3> velocities;              ///< by block of particles: sum [m/s]
+  std::vector<std::array<Real, 2>> motions;  ///< by block: maximum squared speed, acceleration
+  std::vector<Real> pressures;               ///< the highest ones [Pa]
+};
+
 /// The maximum step lengths that a state allows [s]; infinite without a limit.
 struct PresentSteps {
   std::vector<Real> particle;  ///< by free particle; forces of liquids excluded
   std::vector<Real> rigid;     ///< by rigid body
   Real liquid = 0;             ///< limit by the forces of liquids
   ContactScratch contacts;
-  std::vector<Real> pressures;  ///< buffer
+  LiquidStepScratch liquid_scratch;
 
   Real least() const;
 };
@@ -54,9 +62,8 @@ void find_present_steps(const ForceModel& force_model, State& state, Real time, 
 /// Returns the longest whole step for local control [s]. The limits are the prediction of contacts,
 /// and grabs, the central field and coupled liquids, which have no separate level. In this step,
 /// two particles farther apart than twice Model::contact_reach do not come into contact.
-/// `pressures` is a buffer.
 Real greatest_base_step(const ForceModel& force_model, const State& state, const StepBounds& bounds,
-                        const GuardBounds& guard, std::vector<Real>& pressures);
+                        const GuardBounds& guard, LiquidStepScratch& scratch);
 
 /// Returns the longest step without a viscosity solve for an incompressible liquid, if this step is
 /// between half of `step` and `step`. Otherwise returns `step`. A viscosity solve costs about as

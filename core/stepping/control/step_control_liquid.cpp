@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "core/numerics/step_limits.h"
 #include "core/support/check.h"
@@ -45,6 +46,21 @@ std::size_t lasting_rank(std::size_t count) {
   constexpr std::size_t kRare = 100;
   VAT_CHECK(count > 0);
   return count - 1 - (count - 1) / kRare;
+}
+
+// A heap of the highest pressures finds the result in one pass.
+Real lasting_pressure(std::span<const Real> pressures, std::vector<Real>& highest) {
+  if (pressures.empty()) return 0;
+  const std::size_t count = pressures.size() - lasting_rank(pressures.size());
+  highest.assign(pressures.begin(), pressures.begin() + static_cast<std::ptrdiff_t>(count));
+  std::ranges::make_heap(highest, std::greater());
+  for (const Real pressure : pressures.subspan(count)) {
+    if (!(pressure > highest.front())) continue;
+    std::ranges::pop_heap(highest, std::greater());
+    highest.back() = pressure;
+    std::ranges::push_heap(highest, std::greater());
+  }
+  return highest.front();
 }
 
 Real step_of_particles(Real own_step, Real travel, Real speed) {

@@ -1,5 +1,13 @@
 #pragma once
 
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/model/model.h"
+#include "core/numerics/stable_step.h"
+#include "core/types.h"
+
 /// The step lengths that the motion of liquids allows; see find_present_steps().
 namespace vat {
 
@@ -28,6 +36,9 @@ Real step_of_liquid(const Model& model, std::size_t body, const LiquidMotion& mo
 /// `count` > 0 particles. Only 1 % of the particles have a higher pressure. Higher pressures are
 /// impacts, which are too short to disturb the lattice.
 std::size_t lasting_rank(std::size_t count);
+
+/// Returns the pressure of lasting_rank() [Pa], or 0 without particles. `highest` is a buffer.
+Real lasting_pressure(std::span<const Real> pressures, std::vector<Real>& highest);
 
 /// Returns the least of PresentSteps::particle for particles without known accelerations, of which
 /// the fastest one has this speed [m/s]. `own_step` is the least of StepBounds [s], and `travel` is

@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include "core/limits.h"
 #include "core/numerics/error_model.h"
+#include "core/stepping/control/step_control_liquid.h"
 #include "tests/support/scenes.h"
 
 namespace vat::test::step_control_test {
@@ -56,6 +59,21 @@ TEST(StepCount, StepsShortenAtOnceAndLengthenSlowly) {
 }
 
 // Each integrator solves x'' = -x. The error model gives the phase of a step for a given error.
+TEST(LastingPressure, IsExceededByOneInHundredParticles) {
+  std::mt19937 generator(5);
+  std::vector<Real> highest;
+  EXPECT_EQ(lasting_pressure({}, highest), 0);
+  for (const std::size_t count : {1U, 2U, 100U, 101U, 102U, 999U, 5000U}) {
+    std::vector<Real> pressures;
+    for (std::size_t n = 0; n < count; ++n) {
+      pressures.push_back(static_cast<Real>(generator() % (count / 2 + 1)));
+    }
+    const Real lasting = lasting_pressure(pressures, highest);
+    std::ranges::sort(pressures);
+    EXPECT_EQ(lasting, pressures[count - 1 - (count - 1) / 100]) << count;
+  }
+}
+
 TEST(ErrorModel, StepsOfItsPhaseMakeItsError) {
   for (const IntegratorId integrator : kIntegrators) {
     for (const Real error : {1e-2, 1e-3, 1e-4}) {
