@@ -15,16 +15,22 @@ void add_liquid_drags(const StepContext& c, const std::vector<Vec3>& w, std::vec
   VAT_CHECK(w.size() == model.particle_count && force.size() == model.particle_count);
   const std::span<const Index> order = buffers.liquid.grid.order();
   const std::span<const Index> solids = buffers.solids_in_liquid.grid.order();
+  const bool images_drag = is_dragged_by_all_images(model);
+  const ImageVelocities velocity_of =
+      images_drag ? ImageVelocities(*model.scene.vat, {}, false) : ImageVelocities();
+  const auto motion_of_image = [&](const PairImage& image, const PairMotion& source) {
+    const Vec3 velocity(source.vx, source.vy, source.vz);
+    const bool is_mirrored = images_drag && image.walls > 0;
+    return motion_of(0, is_mirrored ? velocity_of(image, velocity) : image.turn(velocity));
+  };
   buffers.sources.set_motions(
       c.runner, [&](std::size_t s) { return motion_of(0, w[order[s]]); },
       [&](std::size_t s) { return motion_of(0, w[model.liquid_count + solids[s]]); },
-      [](const PairImage& image, const PairMotion& source) {
-        return motion_of(0, image.turn({source.vx, source.vy, source.vz}));
-      });
+      motion_of_image);
   if (has_solids(model)) buffers.sources.set_weights(c, {});
   add_pair_forces(c, pair_sums_of(c).force, force);
   if (has_solids(model)) add_pair_forces_on_solids(c, pair_sums_of(c).force, force);
-  if (has_viscous_images(model)) add_viscous_image_forces(c, w, false, force);
+  if (has_viscous_images(model) && !images_drag) add_viscous_image_forces(c, w, false, force);
 }
 
 }  // namespace vat

@@ -50,6 +50,12 @@ PairInputs force_inputs(const StepContext& c) {
   return inputs;
 }
 
+PairInputs dragging_force_inputs(const StepContext& c) {
+  PairInputs inputs = force_inputs(c);
+  inputs.first_dragging = c.work.of<LiquidScratch>().sources.first_mirrored_liquid();
+  return inputs;
+}
+
 PairInputs solid_force_inputs(const StepContext& c) {
   PairInputs inputs = force_inputs(c);
   inputs.first_target = c.work.of<LiquidScratch>().sources.first_solid();

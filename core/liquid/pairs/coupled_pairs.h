@@ -56,6 +56,8 @@ PairInputs charged_pair_inputs(const StepContext& context);
 
 /// Return the inputs of sums that also depend on motions, with liquid or solids as targets.
 PairInputs force_inputs(const StepContext& context);
+/// The same with PairInputs::first_dragging.
+PairInputs dragging_force_inputs(const StepContext& context);
 PairInputs solid_force_inputs(const StepContext& context);
 
 /// Set LiquidScratch::viscosities and target_viscosities for liquid or solids as targets. A pair of

@@ -7,8 +7,10 @@
 #define VAT_PAIR_LOOPS_INL_H
 #endif
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <limits>
 
 #include <hwy/highway.h>
 
@@ -23,6 +25,11 @@ namespace {
 /// bytes, so that the sums are bitwise equal to those of a 16-byte vector.
 template <class T>
 inline constexpr std::size_t kTerms = Simd<T>::kCount == 1 ? 16 / sizeof(T) : 1;
+
+/// Number of candidates that a loop processes at once, or a multiple of this number. The number of
+/// candidates of a cluster is a multiple of kBatch.
+inline constexpr std::size_t kBatch =
+    std::max<std::size_t>(4, hn::MaxLanes(hn::ScalableTag<float>()));
 
 /// The terms of one target.
 template <class T, class Term>
@@ -114,17 +121,16 @@ HWY_INLINE Terms<T, Term> sum_tile(const Target<T>& target, const Tile<T>& tile,
   return terms;
 }
 
-/// Sums over the candidates of the cluster from index `first`. Writes the result to `sums`. `first`
-/// must be a multiple of the number of lanes.
+/// Adds the sums over the candidates [first, end) of the cluster to `sums`. `first` and `end` must
+/// be multiples of kBatch.
 template <class T, class Term>
-void sum_cluster(const PairInputs& in, const TargetCluster& cluster, Tile<T>& tile, Real* sums,
-                 std::size_t first = 0) {
+void add_candidates(const PairInputs& in, const TargetCluster& cluster, std::size_t first,
+                    std::size_t end, Tile<T>& tile, Real* sums) {
   const Frame<T> frame(cluster, in);
   const Index* const candidates = in.candidates + cluster.first_candidate;
-  std::fill_n(sums, Term::kSums * cluster.size(), Real{0});
   Terms<T, Term> group[kTargetGroup] = {};
-  for (std::size_t done = first; done < cluster.candidate_count; done += kTile) {
-    const std::size_t count = std::min<std::size_t>(kTile, cluster.candidate_count - done);
+  for (std::size_t done = first; done < end; done += kTile) {
+    const std::size_t count = std::min<std::size_t>(kTile, end - done);
     fill_tile<Term::kParts>(in, frame, candidates + done, count, tile);
     for (Index i = cluster.begin; i < cluster.end; i += kTargetGroup) {
       const Index targets = std::min(kTargetGroup, cluster.end - i);
@@ -145,6 +151,38 @@ void sum_cluster(const PairInputs& in, const TargetCluster& cluster, Tile<T>& ti
   }
 }
 
+/// Writes the sums over the candidates of the cluster from index `first` to `sums`. `first` must be
+/// a multiple of kBatch.
+template <class T, class Term>
+void sum_cluster(const PairInputs& in, const TargetCluster& cluster, Tile<T>& tile, Real* sums,
+                 std::size_t first = 0) {
+  std::fill_n(sums, Term::kSums * cluster.size(), Real{0});
+  add_candidates<T, Term>(in, cluster, first, cluster.candidate_count, tile, sums);
+}
+
+/// Returns the multiple of kBatch at or before the first image of liquid in a wall.
+inline std::size_t batch_of_images(const TargetCluster& cluster) {
+  return cluster.mirrored_begin - cluster.mirrored_begin % kBatch;
+}
+
+/// Writes the forces on the targets of a cluster near walls whose images drag.
+template <class T, class Kernel>
+void sum_forces_near_walls(const PairInputs& in, const TargetCluster& cluster, Tile<T>& tile,
+                           Real* sums) {
+  const std::size_t images = batch_of_images(cluster);
+  const Index* const candidates = in.candidates + cluster.first_candidate;
+  std::fill_n(sums, 3 * cluster.size(), Real{0});
+  if (images > 0 && candidates[images - 1] >= in.first_mirrored) {
+    using Term = ForceTerm<T, Kernel, Viscosity::not_of_images>;
+    add_candidates<T, Term>(in, cluster, 0, images, tile, sums);
+  } else {
+    using Term = ForceTerm<T, Kernel, Viscosity::same>;
+    add_candidates<T, Term>(in, cluster, 0, images, tile, sums);
+  }
+  using Term = ForceAndDragTerm<T, Kernel>;
+  add_candidates<T, Term>(in, cluster, images, cluster.candidate_count, tile, sums);
+}
+
 template <class T, class Term>
 void sum_clusters(const PairInputs& in, std::span<const TargetCluster> clusters, Real* sums) {
   Tile<T> tile;
@@ -156,10 +194,13 @@ void sum_clusters(const PairInputs& in, std::span<const TargetCluster> clusters,
 template <class T, class Kernel>
 void sum_forces(const PairInputs& in, std::span<const TargetCluster> clusters, Real* sums) {
   Tile<T> tile;
+  const bool drags = in.first_dragging < std::numeric_limits<Index>::max();
   for (const TargetCluster& cluster : clusters) {
     Real* const out = sums + 3 * (cluster.begin - in.first_target);
     if (in.viscosities != nullptr) {
       sum_cluster<T, ForceTerm<T, Kernel, Viscosity::differs>>(in, cluster, tile, out);
+    } else if (cluster.has_mirrored && drags) {
+      sum_forces_near_walls<T, Kernel>(in, cluster, tile, out);
     } else if (cluster.has_mirrored) {
       sum_cluster<T, ForceTerm<T, Kernel, Viscosity::not_of_images>>(in, cluster, tile, out);
     } else {
@@ -170,11 +211,10 @@ void sum_forces(const PairInputs& in, std::span<const TargetCluster> clusters, R
 
 template <class T, class Kernel>
 void sum_drags(const PairInputs& in, std::span<const TargetCluster> clusters, Real* sums) {
-  constexpr std::size_t kLanes = hn::MaxLanes(hn::ScalableTag<float>());
   Tile<T> tile;
   for (const TargetCluster& cluster : clusters) {
     Real* const out = sums + 3 * (cluster.begin - in.first_target);
-    const std::size_t first = cluster.mirrored_begin - cluster.mirrored_begin % kLanes;
+    const std::size_t first = batch_of_images(cluster);
     if (in.viscosities != nullptr) {
       sum_cluster<T, DragTerm<T, Kernel, true>>(in, cluster, tile, out, first);
     } else {

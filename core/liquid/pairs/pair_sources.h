@@ -21,6 +21,9 @@ struct PairImage {
   Vec3 offset;                 ///< from the reflected position to the image [m]
   Index source;                ///< index of the particle
   std::array<bool, 3> axes{};  ///< the reflected axes
+  /// Sum of 3^axis for reflections at a low wall, and 2 * 3^axis for reflections at a high wall.
+  /// Set by ImageOffsets::unpack().
+  std::uint8_t walls = 0;
 
   Vec3 turn(const Vec3& x) const { return Mirror{axes, {}}.turn(x); }
   Vec3 place(const Vec3& p) const { return offset + turn(p); }
@@ -53,13 +56,16 @@ class ImageOffsets {
     const auto& [x, y, z] = image.offsets;
     return {{offsets_[0][x], offsets_[1][y], offsets_[2][z]},
             image.source,
-            {reflects(x), reflects(y), reflects(z)}};
+            {reflects(x), reflects(y), reflects(z)},
+            static_cast<std::uint8_t>(wall_at(x) + 3 * wall_at(y) + 9 * wall_at(z))};
   }
   /// Returns whether an image with the offset `index` is reflected along the offset's axis.
   static bool reflects(std::uint8_t index) { return index >= low_wall; }
 
  private:
   enum Kind : std::uint8_t { none, back, on, low_wall, high_wall };
+  /// Returns 1 for a low wall, 2 for a high wall, and 0 without a reflection.
+  static int wall_at(std::uint8_t index) { return reflects(index) ? index - low_wall + 1 : 0; }
   static constexpr std::size_t kKinds = high_wall + 1;
 
   std::array<std::array<Real, kKinds>, 3> offsets_{};  ///< by axis [m]

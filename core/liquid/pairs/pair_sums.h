@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 
 #include "core/kernels/kernel_id.h"
@@ -99,6 +100,9 @@ struct PairInputs {
   Real viscosity = 0;                        ///< mu of all targets
   Real inverse_support = 0;                  ///< [1/m]
   Index first_mirrored = 0;                  ///< sources from here on are images in walls
+  /// For `force` without viscosities by source: sources from here on add the terms of `drag`, with
+  /// a factor of 1 in place of the pressures. None by default.
+  Index first_dragging = std::numeric_limits<Index>::max();
   bool images_decide = false;         ///< for drag without viscosities by source: p_i counts as 0
   Index first_target = 0;             ///< the source whose sums are written first
   const Index* candidates = nullptr;  ///< of the chunk of the clusters
@@ -127,7 +131,7 @@ struct PairSums {
   /// The sum_j a_j (mu_ij v.x / (q^2 + 0.01/4) - (p_i + p_j)) g x; three numbers. The viscous force
   /// acts along x, so that angular momentum is conserved (J. J. Monaghan, Rep. Prog. Phys. 68
   /// (2005) 1703, sec. 4). The number 0.01/4 is Monaghan's 0.01 h^2 with the smoothing length h,
-  /// which is half of the support radius.
+  /// which is half of the support radius. See also PairInputs::first_dragging.
   Function force;
   /// The sum_j a_j mu_ij max(p_i, p_j) / (q^2 + 0.01/4) g x_a^2 v_a for each axis a; three numbers.
   /// The sum is over candidates from TargetCluster::mirrored_begin on. Without viscosities by

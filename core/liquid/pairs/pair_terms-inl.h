@@ -195,6 +195,33 @@ struct ForceTerm {
   }
 };
 
+/// The sum of ForceTerm with Viscosity::not_of_images and DragTerm.
+template <class T, class Kernel>
+struct ForceAndDragTerm {
+  using V = typename Simd<T>::V;
+  static constexpr TileColumns kParts{
+      .velocity = true, .pressure = true, .share = true, .drag_share = true};
+  static constexpr std::size_t kSums = 3;
+  V sums[kSums];
+
+  HWY_INLINE void add(const Target<T>& i, const Tile<T>& tile, std::size_t k) {
+    const typename Simd<T>::D d;
+    const Offset<T> at = offset_of(i, tile, k);
+    const V weight = hn::Mul(load(tile.weight, k), Kernel::slope(d, at.q));
+    const V divisor = hn::Add(at.square, Simd<T>::set(kSoftening));
+    const V strength = hn::Div(hn::Mul(i.viscosity, weight), divisor);
+    const V x = hn::Mul(hn::Sub(i.vx, load(tile.vx, k)), at.x);
+    const V y = hn::Mul(hn::Sub(i.vy, load(tile.vy, k)), at.y);
+    const V z = hn::Mul(hn::Sub(i.vz, load(tile.vz, k)), at.z);
+    const V central = hn::Mul(hn::Mul(strength, load(tile.share, k)), hn::Add(x, hn::Add(y, z)));
+    const V force = hn::NegMulAdd(hn::Add(i.pressure, load(tile.pressure, k)), weight, central);
+    const V drag = hn::Mul(strength, load(tile.drag_share, k));
+    sums[0] = hn::MulAdd(hn::MulAdd(drag, x, force), at.x, sums[0]);
+    sums[1] = hn::MulAdd(hn::MulAdd(drag, y, force), at.y, sums[1]);
+    sums[2] = hn::MulAdd(hn::MulAdd(drag, z, force), at.z, sums[2]);
+  }
+};
+
 template <class T, class Kernel, bool differs>
 struct DragTerm {
   using V = typename Simd<T>::V;

@@ -26,6 +26,7 @@ struct TileColumns {
   bool pressure = false;
   bool share = false;        ///< `share` is 0 for images in walls, 1 for others
   bool image_share = false;  ///< `share` is 1 for images in walls, 0 for others
+  bool drag_share = false;   ///< `drag_share` is 1 for sources that drag, 0 for others
   bool viscosity = false;
 };
 
@@ -40,6 +41,7 @@ struct Tile {
   alignas(64) T vy[kTile];
   alignas(64) T vz[kTile];
   alignas(64) T share[kTile];
+  alignas(64) T drag_share[kTile];
   alignas(64) T own[kTile];
   alignas(64) T resistance[kTile];
 };
@@ -90,6 +92,11 @@ HWY_INLINE void fill_viscosity(const PairInputs& in, const Index* candidates, st
   if constexpr (parts.image_share) {
     for (std::size_t k = 0; k < count; ++k) {
       tile.share[k] = static_cast<T>(candidates[k] >= in.first_mirrored);
+    }
+  }
+  if constexpr (parts.drag_share) {
+    for (std::size_t k = 0; k < count; ++k) {
+      tile.drag_share[k] = static_cast<T>(candidates[k] >= in.first_dragging);
     }
   }
   if constexpr (parts.viscosity) {

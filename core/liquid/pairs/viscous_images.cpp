@@ -1,64 +1,44 @@
 #include "core/liquid/pairs/viscous_images.h"
 #include "core/liquid/pairs/scratch.h"
 
-#include <array>
-
 #include "core/model/acting_forces.h"
 
 #include "core/liquid/pairs/coupled_pairs.h"
 #include "core/liquid/pairs/liquid_pairs.h"
 
 namespace vat {
+
+ImageVelocities::ImageVelocities(const Vat& vat, const VatMotion& motion, bool walls_move) {
+  for (std::size_t index = 0; index < all_.size(); ++index) {
+    all_[index] = velocity_of(vat, motion, walls_move, index);
+  }
+}
+
+/// One wall after the other, each in its own frame. A slip wall keeps the velocity along it.
+ImageVelocities::MirroredVelocity ImageVelocities::velocity_of(const Vat& vat,
+                                                               const VatMotion& motion,
+                                                               bool walls_move, std::size_t index) {
+  MirroredVelocity result;
+  for (int axis = 0; axis < 3; ++axis, index /= 3) {
+    if (index % 3 == 0) continue;
+    const Wall& wall = vat.walls[2 * static_cast<std::size_t>(axis) + index % 3 - 1];
+    Vec3 factor = Vec3::Constant(wall.no_slip ? -1 : 1);
+    factor[axis] = -1;
+    const Vec3 of_wall = walls_move ? Vec3(motion.velocity + wall.velocity) : Vec3(Vec3::Zero());
+    result.is_dragged = result.is_dragged || wall.no_slip;
+    result.factor = factor.cwiseProduct(result.factor);
+    result.shift = factor.cwiseProduct(result.shift - of_wall) + of_wall;
+  }
+  return result;
+}
+
+bool is_dragged_by_all_images(const Model& model) {
+  if (!has_viscous_images(model) || has_several_liquids(model)) return false;
+  const bool is_everywhere = model.no_slip_walls.size() == model.walls.size();
+  return is_everywhere || is_thick(liquid_of(model, 0), model.scene.dimensions);
+}
+
 namespace {
-
-/// The mirrored velocity: v -> factor v + shift, axis by axis.
-struct MirroredVelocity {
-  bool is_dragged = false;  ///< at least one of its walls is no_slip
-  Vec3 factor = Vec3::Ones();
-  Vec3 shift = Vec3::Zero();
-};
-
-/// The mirrored velocities by the walls of the images: the index is the sum of 3^axis for low walls
-/// and 2 * 3^axis for high walls.
-class MirroredVelocities {
- public:
-  /// If `walls_move` is false, the walls are at rest.
-  MirroredVelocities(const Vat& vat, const VatMotion& motion, bool walls_move) {
-    for (std::size_t index = 0; index < all_.size(); ++index) {
-      all_[index] = velocity_of(vat, motion, walls_move, index);
-    }
-  }
-  /// Returns the mirrored velocity for `mirror`, seen from `place` inside.
-  const MirroredVelocity& at(const Mirror& mirror, const Vec3& place) const {
-    std::size_t index = 0;
-    std::size_t step = 1;
-    for (int axis = 0; axis < 3; ++axis, step *= 3) {
-      if (!mirror.axes[static_cast<std::size_t>(axis)]) continue;
-      index += 2 * place[axis] > mirror.twice_plane[axis] ? step : 2 * step;
-    }
-    return all_[index];
-  }
-
- private:
-  /// One wall after the other, each in its own frame. A slip wall keeps the velocity along it.
-  static MirroredVelocity velocity_of(const Vat& vat, const VatMotion& motion, bool walls_move,
-                                      std::size_t index) {
-    MirroredVelocity result;
-    for (int axis = 0; axis < 3; ++axis, index /= 3) {
-      if (index % 3 == 0) continue;
-      const Wall& wall = vat.walls[2 * static_cast<std::size_t>(axis) + index % 3 - 1];
-      Vec3 factor = Vec3::Constant(wall.no_slip ? -1 : 1);
-      factor[axis] = -1;
-      const Vec3 of_wall = walls_move ? Vec3(motion.velocity + wall.velocity) : Vec3(Vec3::Zero());
-      result.is_dragged = result.is_dragged || wall.no_slip;
-      result.factor = factor.cwiseProduct(result.factor);
-      result.shift = factor.cwiseProduct(result.shift - of_wall) + of_wall;
-    }
-    return result;
-  }
-
-  std::array<MirroredVelocity, 27> all_;
-};
 
 /// Sets the motions of sources for the sum PairSums::drag. The pressure of a source states whether
 /// the source takes part: for an image itself, for a particle all its images.
@@ -66,18 +46,15 @@ void set_motions(const StepContext& c, const std::vector<Vec3>& velocities, bool
   LiquidScratch& buffers = c.work.of<LiquidScratch>();
   const Model& model = c.model;
   const std::span<const Index> order = buffers.liquid.grid.order();
-  const MirroredVelocities mirrored(*model.scene.vat, motion_of(c), walls_move);
+  const ImageVelocities velocity_of(*model.scene.vat, motion_of(c), walls_move);
   const auto is_thick_at = [&](Index i) -> Real {
     return is_thick(liquid_of(model, i), model.scene.dimensions);
   };
   const auto image_motion = [&](const PairImage& image, const PairMotion& source, Real thick) {
     const bool is_mirrored = image.axes[0] || image.axes[1] || image.axes[2];
     if (image.source >= order.size() || !is_mirrored) return PairMotion{};
-    const MirroredVelocity& turned =
-        mirrored.at(image.mirror(), buffers.sources.place(image.source));
-    const Vec3 velocity(source.vx, source.vy, source.vz);
-    return vat::motion_of(turned.is_dragged ? 1 : thick,
-                          turned.factor.cwiseProduct(velocity) + turned.shift);
+    return vat::motion_of(velocity_of.is_dragged(image) ? 1 : thick,
+                          velocity_of(image, {source.vx, source.vy, source.vz}));
   };
   const auto solid_motion = [](std::size_t) { return PairMotion{}; };
   if (!has_several_liquids(model)) {

@@ -70,7 +70,7 @@ void add_coupled_force_stages(const Model& model, PlanBuilder& plan) {
     plan.add("liquid_forces", {velocity, liquid_cells, pair_clusters, density, pressure, force},
              {pair_motion, force}, &add_tait_forces);
   }
-  if (has_viscous_images(model)) {
+  if (has_viscous_images(model) && !is_dragged_by_all_images(model)) {
     plan.add("viscous_images", {velocity, liquid_cells, pair_clusters, pair_motion, force},
              {pair_motion, force}, static_cast<StageFunction>(&add_viscous_image_forces));
   }

@@ -6,6 +6,7 @@
 
 #include "core/liquid/pairs/coupled_pairs.h"
 #include "core/liquid/pairs/liquid_pairs.h"
+#include "core/liquid/pairs/viscous_images.h"
 #include "core/liquid/pairs/weakly_compressible_pairs.h"
 #include "core/support/check.h"
 
@@ -157,7 +158,8 @@ Real pressure_term(const StepContext& c, Index i) {
 }
 
 /// Sets pressures and velocities, including those of images.
-void set_motions(StepContext& c) {
+template <class Image>
+void set_motions(StepContext& c, Image&& image_motion) {
   LiquidScratch& buffers = c.work.of<LiquidScratch>();
   const std::span<const Index> order = buffers.liquid.grid.order();
   const std::span<const Index> solids = buffers.solids_in_liquid.grid.order();
@@ -168,7 +170,19 @@ void set_motions(StepContext& c) {
       [&](std::size_t s) {
         return motion_of(buffers.solid_pressure[s], velocity[c.model.liquid_count + solids[s]]);
       },
-      ImageMotion(c));
+      image_motion);
+}
+
+void set_motions(StepContext& c) {
+  const ImageMotion with_turned_velocity(c);
+  if (!is_dragged_by_all_images(c.model)) return set_motions(c, with_turned_velocity);
+  const ImageVelocities velocity_of(*c.model.scene.vat, motion_of(c), true);
+  set_motions(c, [&](const PairImage& image, const PairMotion& source) {
+    PairMotion motion = with_turned_velocity(image, source);
+    if (image.walls == 0) return motion;
+    const Vec3 velocity = velocity_of(image, {source.vx, source.vy, source.vz});
+    return motion_of(motion.pressure, velocity);
+  });
 }
 
 }  // namespace
@@ -189,10 +203,12 @@ void add_pair_forces(const StepContext& c, PairSums::Function sum, std::vector<V
   const Model& model = c.model;
   const std::span<const Index> order = buffers.liquid.grid.order();
   if (has_several_liquids(model)) set_liquid_viscosities(c);
+  const PairInputs inputs =
+      is_dragged_by_all_images(model) ? dragging_force_inputs(c) : force_inputs(c);
   const auto factor =
       by_material(model, [&](const LiquidModel& liquid) { return slope_factor(model, liquid); });
   buffers.liquid_clusters.for_each_sum<3>(
-      c.runner, force_inputs(c), sum, [&](const TargetCluster&, Index slot, const Real* sums) {
+      c.runner, inputs, sum, [&](const TargetCluster&, Index slot, const Real* sums) {
         const Index i = order[slot];
         force[i] += model.rest_volume[i] * factor[model.material[i]] * Eigen::Map<const Vec3>(sums);
       });

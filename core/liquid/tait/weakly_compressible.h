@@ -52,12 +52,14 @@ void compute_tait_pressure(StepContext& context);
 /// 7057, eq. 27). The pressure is at least zero, except in a liquid that fills its world.
 void extrapolate_pressure(StepContext& context);
 
-/// Stages that add the pressure and viscous forces on liquid particles and on solid particles.
+/// Stages that add the pressure and viscous forces on liquid particles and on solid particles. The
+/// forces on liquid include those of add_viscous_image_forces() if is_dragged_by_all_images().
 void add_tait_forces(StepContext& context);
 void add_tait_forces_on_solids(StepContext& context);
 
 /// Add the sums `sum` (PairSums::pressure or PairSums::force) with the present motions of the
-/// sources, as forces on liquid particles and on solid particles, to `force`.
+/// sources, as forces on liquid particles and on solid particles, to `force`. If
+/// is_dragged_by_all_images(), PairSums::force includes the forces of images.
 void add_pair_forces(const StepContext& context, PairSums::Function sum, std::vector<Vec3>& force);
 void add_pair_forces_on_solids(const StepContext& context, PairSums::Function sum,
                                std::vector<Vec3>& force);

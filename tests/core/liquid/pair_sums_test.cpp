@@ -17,7 +17,7 @@ namespace {
 constexpr Real kSupport = 0.3;
 constexpr Index kTargets = 11;
 constexpr Index kSources = 700;  // more than a tile
-constexpr Index kMirrored = 500;
+constexpr Index kMirrored = 501;
 
 /// One cluster of targets (the first sources), among sources within and beyond its reach.
 struct Pairs {
@@ -30,6 +30,7 @@ struct Pairs {
   std::vector<Real> target_viscosities;
   std::vector<Index> candidates;
   TargetCluster cluster;
+  Index dragging = std::numeric_limits<Index>::max();
 
   Pairs() {
     std::mt19937 generator(3);
@@ -77,6 +78,7 @@ struct Pairs {
     in.inverse_support = 1 / kSupport;
     in.viscosity = 0.8;
     in.first_mirrored = kMirrored;
+    in.first_dragging = dragging;
     in.candidates = candidates.data();
     if (mixed) {
       in.viscosities = viscosities.data();
@@ -204,6 +206,25 @@ TEST_P(PairSumsOf, ForceHasViscosityOfAllButImagesInWalls) {
       const Real both = pairs_.motions[p.i].pressure + pairs_.motions[p.j].pressure;
       const Real force = mu * p.v.dot(p.x) / softened(p) - both;
       for (int a = 0; a < 3; ++a) add(a, pairs_.places[p.j].weight * force * p.g * p.x[a]);
+    });
+  }
+}
+
+// Images in walls from the index `dragging` on drag. Images before it are those of solids.
+TEST_P(PairSumsOf, ForceIncludesDrag) {
+  for (const Index dragging : {kMirrored, Index{0}, Index{534}, kSources}) {
+    Pairs pairs = pairs_;
+    pairs.dragging = std::max(dragging, kMirrored);
+    pairs.cluster.mirrored_begin = dragging;
+    expect(&PairSums::force, pairs, false, 3, [&](const Pair& p, auto add) {
+      const Real both = pairs.motions[p.i].pressure + pairs.motions[p.j].pressure;
+      const Real viscous = 0.8 / softened(p);
+      const Real central = p.j < kMirrored ? viscous * p.v.dot(p.x) : 0;
+      const Real drag = p.j >= pairs.dragging ? viscous : 0;
+      for (int a = 0; a < 3; ++a) {
+        const Real force = central - both + drag * p.v[a] * p.x[a];
+        add(a, pairs.places[p.j].weight * force * p.g * p.x[a]);
+      }
     });
   }
 }
