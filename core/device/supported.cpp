@@ -88,7 +88,6 @@ void Missing::check_bodies() {
 void Missing::check_world() {
   reject(!scene_.emitters.empty(), "/emitters", "must be empty");
   reject(!scene_.drains.empty(), "/drains", "must be empty");
-  reject(model_.periodic.any(), "/periodic", "must be absent");
   reject(scene_.central_field.has_value(), "/central_field", "must be absent");
   reject(scene_.sleeping.has_value(), "/sleeping", "must be absent");
 }

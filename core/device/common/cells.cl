@@ -72,6 +72,17 @@ kernel void scatter(const int count, global const int* cell_of, global const int
   if (i < count) unsorted[begins[cell_of[i]] + rank[i]] = i;
 }
 
+// Runs BODY for each row of cells in the box from `low` to `high`, with the slots [begin, end).
+#define FOR_EACH_ROW_IN(p, low, high, begins, BODY)                            \
+  for (int z = low[2]; z <= high[2]; ++z) {                                    \
+    for (int y = low[1]; y <= high[1]; ++y) {                                  \
+      const int row = (z * (p)->cells[1] + y) * (p)->cells[0];                 \
+      const int begin = begins[row + low[0]];                                  \
+      const int end = begins[row + high[0] + 1];                               \
+      BODY                                                                     \
+    }                                                                          \
+  }
+
 // The position of a particle in the order of cells. Within a cell, this is the order of particles,
 // because the order of atomic operations differs from run to run.
 int slot_in_cell(int i, global const int* cell_of, global const int* begins,

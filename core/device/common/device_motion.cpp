@@ -2,11 +2,22 @@
 
 #include <algorithm>
 
+#include "core/device/common/kernel_values.h"
 #include "core/support/check.h"
 
 namespace vat {
 
 using opencl::Program;
+
+namespace {
+
+/// The struct PeriodicBox of state.cl.
+struct KernelBox {
+  double low[3];
+  double length[3];
+};
+
+}  // namespace
 
 DeviceMotion::DeviceMotion(Program& program, std::size_t particles)
     : position(program, particles * sizeof(Vec3)),
@@ -26,6 +37,18 @@ void DeviceMotion::copy_from(const DeviceMotion& other) {
   VAT_CHECK(other.count_ == count_);
   program_.copy(other.position, position, count_ * sizeof(Vec3));
   program_.copy(other.velocity, velocity, count_ * sizeof(Vec3));
+}
+
+void DeviceMotion::wrap_liquid(const Model& model) {
+  if (!model.periodic.any() || model.liquid_count == 0) return;
+  VAT_CHECK(model.liquid_count <= count_);
+  KernelBox box{};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!model.periodic.repeats(axis)) continue;
+    box.low[axis] = model.scene.periodic->min[axis];
+    box.length[axis] = model.periodic.length(axis);
+  }
+  program_.run("wrap_particles", model.liquid_count, number_of(model.liquid_count), box, position);
 }
 
 void ReadMotion::read(Program& program, const DeviceMotion& from, std::size_t particles) {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/device/opencl/program.h"
+#include "core/model/model.h"
 #include "core/state/state.h"
 
 namespace vat {
@@ -19,6 +20,9 @@ class DeviceMotion {
   /// Writes the motion of the particles of `from`, beginning with particle `first`.
   void write(const Configuration& from, std::size_t first = 0);
   void copy_from(const DeviceMotion& other);
+  /// Moves liquid particles that have left a periodic world to the opposite side, as the CPU does
+  /// after each nominal step. They are the first particles.
+  void wrap_liquid(const Model& model);
 
   opencl::Buffer position;
   opencl::Buffer velocity;

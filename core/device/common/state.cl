@@ -20,6 +20,30 @@ bool is_within(const double* low, const double* high, double greatest_speed2, co
   return sound;
 }
 
+// The image of a coordinate in a periodic box, see PeriodicBox::wrap(). An axis with the length 0 is not
+// periodic.
+double wrapped(double x, double low, double length) {
+  const double high = low + length;
+  if (length == 0 || (x >= low && x < high)) return x;
+  const double image = x - length * floor((x - low) / length);
+  // Rounding may move the image out of the box. In this form, a NaN remains.
+  return image < low || image >= high ? low : image;
+}
+
+typedef struct {
+  double low[3];
+  double length[3];
+} PeriodicBox;
+
+// Moves particles that have left a periodic world to the opposite side.
+kernel void wrap_particles(const int count, const PeriodicBox box, global double* position) {
+  const int i = get_global_id(0);
+  if (i >= count) return;
+  for (int k = 0; k < 3; ++k) {
+    position[3 * i + k] = wrapped(position[3 * i + k], box.low[k], box.length[k]);
+  }
+}
+
 // Each sum is a fixed tree: first over a group, then over the partial sums of the groups.
 
 // The maximum, and `a` if the comparison fails because of a NaN.

@@ -9,8 +9,10 @@
 
 namespace vat {
 
-std::array<Vec3, 2> box_of_cells(const Model& model) {
-  if (model.scene.vat) return {model.scene.vat->min, model.scene.vat->max};
+namespace {
+
+/// The bodies at time 0, with half their extent around them.
+std::array<Vec3, 2> box_of_bodies(const Model& model) {
   Vec3 low = Vec3::Constant(std::numeric_limits<Real>::infinity());
   Vec3 high = -low;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
@@ -22,6 +24,20 @@ std::array<Vec3, 2> box_of_cells(const Model& model) {
   }
   const Vec3 margin = (high - low) / 2;
   return {low - margin, high + margin};
+}
+
+}  // namespace
+
+std::array<Vec3, 2> box_of_cells(const Model& model) {
+  // Along periodic axes, the vat has the extent of the world.
+  if (model.scene.vat) return {model.scene.vat->min, model.scene.vat->max};
+  std::array<Vec3, 2> box = box_of_bodies(model);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!model.periodic.repeats(axis)) continue;
+    box[0][axis] = model.scene.periodic->min[axis];
+    box[1][axis] = model.scene.periodic->max[axis];
+  }
+  return box;
 }
 
 Real plane_of_wall(const Vat& vat, const VatMotion& motion, int wall) {

@@ -8,8 +8,8 @@
 namespace vat {
 
 /// Returns the corners of the box of the cells [m]: the vat, or the bodies at time 0 with half
-/// their extent around them. Particles outside are in the outermost cells, which is slower, but not
-/// less accurate.
+/// their extent around them. Along periodic axes, the box is that of the world. Particles outside
+/// are in the outermost cells, which is slower, but not less accurate.
 std::array<Vec3, 2> box_of_cells(const Model& model);
 
 /// Returns the first coordinate inside a wall that counts as inside [m]; see wall_distance().

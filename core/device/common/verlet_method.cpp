@@ -27,6 +27,7 @@ bool VerletMethod::take_nominal_steps(const NominalSteps& steps, AdvanceReport& 
   for (std::uint32_t s = 0; s < steps.count; ++s) {
     moment.time = steps.time(s);
     take_step(moment, moment.time + dt, report);
+    wrap_liquid();
     moment.closing = dt / 2;
   }
   moment.time = steps.time(steps.count);

@@ -47,6 +47,8 @@ class VerletMethod : public DeviceMethod {
   virtual std::uint32_t solve_damping(Real end, Real dt) = 0;
   /// Ends a step at the time of `moment`, with its closing kick. Checks the state.
   virtual void finish(const StepMoment& moment) = 0;
+  /// Ends a nominal step in a periodic world, see DeviceMotion::wrap_liquid().
+  virtual void wrap_liquid() = 0;
   /// Takes `steps`. Returns false if a state is known to be invalid; the remaining steps are then
   /// not taken. This function takes fixed steps.
   virtual bool take_nominal_steps(const NominalSteps& steps, AdvanceReport& report);

@@ -22,26 +22,17 @@ typedef struct {
 #define FOR_EACH_GAS_NEIGHBOUR(BODY)                                           \
   {                                                                            \
     const double place[3] = {at.x, at.y, at.z};                                \
-    int low[3];                                                                \
-    int high[3];                                                               \
-    for (int k = 0; k < 3; ++k) {                                              \
-      low[k] = cell_of_solid(&p, place[k] - support, k);                       \
-      high[k] = cell_of_solid(&p, place[k] + support, k);                      \
-    }                                                                          \
-    for (int z = low[2]; z <= high[2]; ++z) {                                  \
-      for (int y = low[1]; y <= high[1]; ++y) {                                \
-        const int row = (z * p.cells[1] + y) * p.cells[0];                     \
-        const int end = begins[row + high[0] + 1];                             \
-        for (int slot = begins[row + low[0]]; slot < end; ++slot) {            \
-          const double3 way = at - sorted_position[slot].xyz;                  \
-          const double square = product(way, way);                             \
-          const int j = order[slot];                                           \
-          if (!(square < support * support) || j == i || j >= p.liquids) continue; \
-          if (bodies[body_of[j]].material != material) continue;               \
-          BODY                                                                 \
-        }                                                                      \
+    FOR_EACH_ROW_OF_SOLIDS(&p, place, support, begins, {                       \
+      for (int slot = begin; slot < end; ++slot) {                             \
+        const double3 across = (double3)(shift[0], shift[1], shift[2]);        \
+        const double3 way = at - sorted_position[slot].xyz + across;           \
+        const double square = product(way, way);                               \
+        const int j = order[slot];                                             \
+        if (!(square < support * support) || j == i || j >= p.liquids) continue; \
+        if (bodies[body_of[j]].material != material) continue;                 \
+        BODY                                                                   \
       }                                                                        \
-    }                                                                          \
+    })                                                                         \
   }
 
 // The volume of each particle, its pressure times the share, and its velocity in forces. All are in

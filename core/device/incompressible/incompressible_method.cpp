@@ -257,6 +257,7 @@ bool IncompressibleMethod::take_steps(const EngineInput& input, std::uint32_t st
   bool is_sound = true;
   for (std::uint32_t s = 0; s < steps && is_sound; ++s) {
     is_sound = take_nominal_step({time(s), time(s + 1), dt}, report);
+    now_.motion.wrap_liquid(*model_);
   }
   if (!is_sound) {
     copy(start_, now_);

@@ -63,7 +63,7 @@ float rate_of(const Parameters* p, int slot, global const int* begins,
     const float3 x = way_from(p, code, n, other);
     const float square = square_of(x);
     if (!(square < 1)) continue;
-    const float3 v = mine - turned(code, motions[j].xyz);
+    const float3 v = mine - turned(p, code, motions[j].xyz);
     const float weight = is_solid(other) ? 2 * weight_of(other) : weight_of(other);
     sum += weight * kernel_slope(sqrt(square)) * (v.x * x.x + v.y * x.y + v.z * x.z);
   })

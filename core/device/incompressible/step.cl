@@ -69,9 +69,9 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_density(
       const float share = weight_of(other) * slope;
       sum += weight_of(other) * kernel_value(q);
       if (is_solid(other)) {
-        gradient += 2 * share * turned(code, x);
+        gradient += 2 * share * turned(&p, code, x);
       } else {
-        gradient += share * turned(code, x);
+        gradient += share * turned(&p, code, x);
         square_sum += share * slope * square;
       }
       list(lists, slot, &count, j, code);

@@ -72,8 +72,8 @@ float3 pull_of_walls(const Parameters* p, const Cohesion* c, const int* n) {
 }
 
 // The sum of weight * slope * x over the sources in the reach of the kernel. For a liquid target, all
-// sources count; for a solid one, the liquid. p.reach is that of the kernel. `shares` is in the order
-// of particles.
+// sources count; for a solid one, the liquid. p.reach and p.support are those of the kernel, and p.sides
+// has no walls. `shares` is in the order of particles.
 float3 cohesion_sum(const Parameters* p, const Cohesion* c, int slot, global const int* begins,
                     global const int* order, global const int4* sorted_place,
                     global const float* shares) {
@@ -82,16 +82,14 @@ float3 cohesion_sum(const Parameters* p, const Cohesion* c, int slot, global con
   const bool is_target_solid = is_solid(own);
   const float own_share = shares[order[slot]];
   float3 sum = 0;
-  FOR_EACH_ROW(p, n, begins, {
-    for (int j = begin; j < end; ++j) {
-      const int4 source = sorted_place[j];
-      if (is_target_solid && is_solid(source)) continue;
-      const float3 x = way_to(p, n, source);
-      const float square = square_of(x);
-      if (!(square * c->inverse_far * c->inverse_far < 1)) continue;
-      const float share = is_target_solid ? own_share : shares[order[j]];
-      sum += weight_of(source) * cohesion_slope(c, share, sqrt(square)) * x;
-    }
+  FOR_EACH_CANDIDATE(p, n, begins, {
+    const int4 source = sorted_place[j];
+    if (is_target_solid && is_solid(source)) continue;
+    const float3 x = way_to(p, at, source);
+    const float square = square_of(x);
+    if (!(square * c->inverse_far * c->inverse_far < 1)) continue;
+    const float share = is_target_solid ? own_share : shares[order[j]];
+    sum += weight_of(source) * cohesion_slope(c, share, sqrt(square)) * x;
   })
   return sum;
 }

@@ -37,10 +37,13 @@ CohesionParameters cohesion_parameters(const Model& model) {
   return c;
 }
 
-/// The parameters with the range of cells of the cohesion, which is twice that of the density.
+/// The parameters with the reach of the cohesion, which is twice that of the density. Walls attract
+/// as planes, without images.
 LiquidParameters with_reach_of_cohesion(LiquidParameters p) {
   static_assert(CohesionKernel::kReach == 2);
   p.reach *= 2;
+  p.support *= 2;
+  p.sides &= ~p.walls;
   return p;
 }
 

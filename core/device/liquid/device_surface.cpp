@@ -69,6 +69,7 @@ DeviceSurface::DeviceSurface(Program& program, const Model& model)
     : program_(program),
       parameters_(surface_parameters(model)),
       liquid_count_(model.liquid_count),
+      is_periodic_(model.periodic.any()),
       is_balanced_(model.walls.empty() && model.particle_count == model.liquid_count),
       surface_(program, model.particle_count * sizeof(Float4)),
       normals_(program, model.particle_count * sizeof(Float4)),
@@ -98,7 +99,7 @@ void DeviceSurface::add_forces(const LiquidParameters& p, const DeviceParticles&
     program_.run("end_surface_sums", Program::kGroup, groups, partial_, results_);
     std::array<Double4, kSurfaceSums> sums{};
     program_.read(results_, std::span<Double4>(sums));
-    balance = balance_of(surface_sum(sums), true);
+    balance = balance_of(surface_sum(sums), !is_periodic_);
   }
   program_.run("add_curvature_forces", s.count(), p, to_kernel(balance), s.order, s.sorted_place,
                normals_, curved_, acceleration);

@@ -36,6 +36,7 @@ class DeviceSurface {
   opencl::Program& program_;
   const SurfaceParameters parameters_;
   const std::size_t liquid_count_;
+  const bool is_periodic_;
   const bool is_balanced_;                     ///< the liquid touches neither walls nor solids
   opencl::Buffer surface_, normals_, curved_;  ///< by slot
   opencl::Buffer partial_, results_;

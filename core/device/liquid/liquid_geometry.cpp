@@ -30,6 +30,24 @@ void remove_walls(LiquidParameters& parameters) {
   }
 }
 
+std::int32_t periodic_sides(const Model& model) {
+  std::int32_t sides = 0;
+  for (int axis = 0; axis < 3; ++axis) sides |= model.periodic.repeats(axis) ? 3 << (2 * axis) : 0;
+  return sides;
+}
+
+/// A periodic box begins at the origin. Positions beyond kPlaces are invalid, so that a longer
+/// period needs no exact value.
+void LiquidGeometry::set_period(const PeriodicBox& box) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!box.repeats(axis)) continue;
+    constant_.period[axis] = box.length(axis);
+    const Real places = std::min(box.length(axis) * constant_.inverse_unit, 2 * kPlaces);
+    constant_.periods[axis] = static_cast<std::int32_t>(std::llround(places));
+    constant_.twice_high[axis] = 2 * constant_.periods[axis];
+  }
+}
+
 void LiquidGeometry::set_grid(const Model& model) {
   const auto [low, high] = box_of_cells(model);
   const Real support = model.liquids[model.material[0]]->support_radius;
@@ -60,6 +78,7 @@ void LiquidGeometry::set_grid(const Model& model) {
   constant_.inverse_unit = 1 / unit;
   constant_.unit = static_cast<float>(unit);
   constant_.in_supports = std::ldexp(1.0F, -bits);
+  set_period(model.periodic);
 }
 
 LiquidGeometry::LiquidGeometry(const Model& model, const GuardBounds& bounds) {
@@ -79,6 +98,7 @@ LiquidGeometry::LiquidGeometry(const Model& model, const GuardBounds& bounds) {
   // The weight of a particle is its rest volume times the scale of the kernel.
   constant_.solid_factor = static_cast<float>(slope_factor(model, liquid) / liquid.kernel.scale());
   for (const int wall : model.walls) constant_.walls |= 1 << wall;
+  constant_.sides = constant_.walls | periodic_sides(model);
   for (const int wall : model.no_slip_walls) constant_.no_slip |= 1 << wall;
   constant_.is_thick = is_thick(liquid, model.scene.dimensions) ? 1 : 0;
   constant_.bounces = model.is_incompressible ? 0 : 1;

@@ -16,6 +16,7 @@ struct LiquidParameters {
   double wall_low[3];   ///< infinite without a wall [m]
   double wall_high[3];
   double wall_velocity[3];
+  double period[3];      ///< length along periodic axes; 0 along others [m]
   double domain_low[3];  ///< bounds of valid positions [m]
   double domain_high[3];
   double greatest_speed2;  ///< bound of valid speeds, squared [m^2/s^2]
@@ -39,17 +40,22 @@ struct LiquidParameters {
   float speeds_of_walls[18];  ///< velocity of the surface of each wall [m/s]
   std::int32_t twice_low[3];  ///< 2 wall_low in integer positions
   std::int32_t twice_high[3];
+  std::int32_t periods[3];  ///< period in integer positions; 0 along other axes
   std::int32_t cells[3];
   std::int32_t cell_bits;  ///< a cell has 2^cell_bits integer positions along each axis
   std::int32_t reach;      ///< cells that a support radius extends into beside the own one
   std::int32_t support;    ///< support radius in integer positions
   std::int32_t walls;      ///< bit w: wall w exists
+  std::int32_t sides;      ///< bit w: wall w exists, or its axis is periodic
   std::int32_t no_slip;    ///< bit w: liquid does not slip along wall w
   std::int32_t is_thick;   ///< 1: slip walls are viscous, see is_thick()
   std::int32_t bounces;    ///< 1: walls reverse velocities; 0: walls remove them
   std::int32_t count;      ///< liquid particles
   std::int32_t solids;     ///< solid particles
 };
+
+/// Returns the bits of the sides across periodic axes.
+std::int32_t periodic_sides(const Model& model);
 
 /// Sets the walls of the parameters so far away that they stop no particles. Images in the walls
 /// remain.
@@ -67,6 +73,7 @@ class LiquidGeometry {
 
  private:
   void set_grid(const Model& model);
+  void set_period(const PeriodicBox& box);
 
   LiquidParameters constant_{};
   Real travel_ = 0;             ///< [m]

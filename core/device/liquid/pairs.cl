@@ -1,5 +1,5 @@
-// Pairs of particles: neighbours, their lists, and forces. A wall is a mirror: the images near a
-// particle are the particles near its own images. See core/liquid/tait/weakly_compressible.h for the
+// Pairs of particles: neighbours, their lists, and forces. A wall is a mirror, and the sides of a periodic
+// axis shift by its period: the images near a particle are the particles near its own images. See core/liquid/tait/weakly_compressible.h for the
 // method.
 
 // The kernel wendland_c2, see core/kernels/smoothing_kernel.h.
@@ -13,24 +13,36 @@ float kernel_slope(float q) {
   return rest * rest * rest;
 }
 
-// A mirror: for each axis 0, or 1 for the lower wall, or 2 for the upper wall.
+// A mirror: for each axis 0, or 1 for the lower wall, or 2 for the upper wall. Along a periodic axis,
+// 1 and 2 are shifts across these sides.
 typedef struct {
   int axes[3];
 } Mirror;
 
+// Whether a mirror reverses the direction of an axis.
+bool reverses(const Parameters* p, const Mirror* m, int axis) {
+  return m->axes[axis] > 0 && p->periods[axis] == 0;
+}
+
+bool is_shift(const Parameters* p, const Mirror* m) {
+  return !reverses(p, m, 0) && !reverses(p, m, 1) && !reverses(p, m, 2);
+}
+
 int reflected(const Parameters* p, const Mirror* m, int place, int axis) {
   if (m->axes[axis] == 0) return place;
+  const int period = p->periods[axis];
+  if (period > 0) return m->axes[axis] == 1 ? place + period : place - period;
   return (m->axes[axis] == 1 ? p->twice_low[axis] : p->twice_high[axis]) - place;
 }
 
-// Bit 2 k + 1 of the result: the lower wall across axis k is within a support radius. Bit 2 k + 2:
-// the upper wall.
-int walls_near(const Parameters* p, const int* n) {
+// Bit 2 k + 1 of the result: the lower side across axis k is within a support radius. Bit 2 k + 2:
+// the upper side.
+int sides_near(const Parameters* p, const int* n) {
   const int twice_reach = 2 * p->support;
   int near = 0;
   for (int k = 0; k < 3; ++k) {
-    if (((p->walls >> (2 * k)) & 1) && 2 * n[k] - p->twice_low[k] < twice_reach) near |= 2 << (2 * k);
-    if (((p->walls >> (2 * k + 1)) & 1) && p->twice_high[k] - 2 * n[k] < twice_reach) {
+    if (((p->sides >> (2 * k)) & 1) && 2 * n[k] - p->twice_low[k] < twice_reach) near |= 2 << (2 * k);
+    if (((p->sides >> (2 * k + 1)) & 1) && p->twice_high[k] - 2 * n[k] < twice_reach) {
       near |= 4 << (2 * k);
     }
   }
@@ -40,7 +52,7 @@ int walls_near(const Parameters* p, const int* n) {
 // Runs BODY for each mirror `m` whose images may be near the position n: also for no reflection.
 #define FOR_EACH_MIRROR(p, n, BODY)                                            \
   {                                                                            \
-    const int near = walls_near(p, n);                                         \
+    const int near = sides_near(p, n);                                         \
     Mirror m;                                                                  \
     for (m.axes[0] = 0; m.axes[0] < 3; ++m.axes[0]) {                          \
       if (m.axes[0] != 0 && !((near >> m.axes[0]) & 1)) continue;              \
@@ -64,14 +76,7 @@ int walls_near(const Parameters* p, const int* n) {
       low[k] = clamp(c - (p)->reach, 0, (p)->cells[k] - 1);                             \
       high[k] = clamp(c + (p)->reach, 0, (p)->cells[k] - 1);                            \
     }                                                                          \
-    for (int z = low[2]; z <= high[2]; ++z) {                                  \
-      for (int y = low[1]; y <= high[1]; ++y) {                                \
-        const int row = (z * (p)->cells[1] + y) * (p)->cells[0];               \
-        const int begin = begins[row + low[0]];                                \
-        const int end = begins[row + high[0] + 1];                             \
-        BODY                                                                   \
-      }                                                                        \
-    }                                                                          \
+    FOR_EACH_ROW_IN(p, low, high, begins, BODY)                                \
   }
 
 // The part of the relative density that a particle and its own images have in excess of 1.
@@ -151,11 +156,11 @@ float3 way_to(const Parameters* p, const int* at, int4 source) {
 }
 
 // The direction x from the image in a mirror, seen from the particle that is not reflected.
-float3 turned(uint code, float3 x) {
+float3 turned(const Parameters* p, uint code, float3 x) {
   if (code == 0) return x;
   const Mirror m = mirror_of(code);
-  return (float3)(m.axes[0] > 0 ? -x.x : x.x, m.axes[1] > 0 ? -x.y : x.y,
-                  m.axes[2] > 0 ? -x.z : x.z);
+  return (float3)(reverses(p, &m, 0) ? -x.x : x.x, reverses(p, &m, 1) ? -x.y : x.y,
+                  reverses(p, &m, 2) ? -x.z : x.z);
 }
 
 // The vector from a source, or from its image, to a target at n, in support radii.
@@ -164,7 +169,7 @@ float3 way_from(const Parameters* p, uint code, const int* n, int4 source) {
   const Mirror m = mirror_of(code);
   int at[3];
   for (int k = 0; k < 3; ++k) at[k] = reflected(p, &m, n[k], k);
-  return turned(code, way_to(p, at, source));
+  return turned(p, code, way_to(p, at, source));
 }
 
 float square_of(float3 x) {
@@ -178,6 +183,7 @@ float image_pressure(const Parameters* p, const Mirror* m, int4 place, float pre
   const int n[3] = {place.x, place.y, place.z};
   float more = 0;
   for (int k = 0; k < 3; ++k) {
+    if (p->periods[k] > 0) continue;
     more += p->fall[k] * ((float)(reflected(p, m, n[k], k) - n[k]) * p->unit);
   }
   return max(0.0f, pressure + pressure / (pressure + p->layer) * (p->density * more));
@@ -204,7 +210,7 @@ void add_force(const Parameters* p, const int* n, float4 mine, int4 source, floa
 float3 mirrored_velocity(const Parameters* p, const Mirror* m, float4 motion) {
   float v[3] = {motion.x, motion.y, motion.z};
   for (int axis = 0; axis < 3; ++axis) {
-    if (m->axes[axis] == 0) continue;
+    if (!reverses(p, m, axis)) continue;
     const int wall = 2 * axis + m->axes[axis] - 1;
     const bool has_no_slip = (p->no_slip >> wall) & 1;
     for (int k = 0; k < 3; ++k) {
@@ -222,7 +228,7 @@ bool is_viscous(const Parameters* p, const Mirror* m) {
   return p->is_thick || (walls & p->no_slip);
 }
 
-// Adds the force of the image of a source on a target. A solid has no viscous force of images.
+// Adds the force of the reflection of a source on a target. A solid has no viscous force of images.
 void add_force_of_image(const Parameters* p, const Mirror* m, const int* n, int is_target_solid,
                         float4 mine, int4 source, float4 its, float* sum) {
   int at[3];
@@ -232,9 +238,9 @@ void add_force_of_image(const Parameters* p, const Mirror* m, const int* n, int 
   if (!(square < 1)) return;
   const float force = -(mine.w + image_pressure(p, m, source, its.w));
   const float share = force * (weight_of(source) * kernel_slope(sqrt(square)));
-  sum[0] += share * (m->axes[0] > 0 ? -x.x : x.x);
-  sum[1] += share * (m->axes[1] > 0 ? -x.y : x.y);
-  sum[2] += share * (m->axes[2] > 0 ? -x.z : x.z);
+  sum[0] += share * (reverses(p, m, 0) ? -x.x : x.x);
+  sum[1] += share * (reverses(p, m, 1) ? -x.y : x.y);
+  sum[2] += share * (reverses(p, m, 2) ? -x.z : x.z);
   if (is_target_solid || is_solid(source) || !is_viscous(p, m)) return;
   const float3 v = mirrored_velocity(p, m, its);
   const float drag = p->viscosity / (square + SOFTENING) *
@@ -249,8 +255,14 @@ void add_force_of(const Parameters* p, uint code, const int* n, int is_target_so
                   int4 source, float4 its, float* sum) {
   if (code == 0) {
     add_force(p, n, mine, source, its, sum);
+    return;
+  }
+  const Mirror m = mirror_of(code);
+  if (is_shift(p, &m)) {
+    int at[3];
+    for (int k = 0; k < 3; ++k) at[k] = reflected(p, &m, n[k], k);
+    add_force(p, at, mine, source, its, sum);
   } else {
-    const Mirror m = mirror_of(code);
     add_force_of_image(p, &m, n, is_target_solid, mine, source, its, sum);
   }
 }

@@ -11,6 +11,7 @@ typedef struct {
   double wall_low[3];
   double wall_high[3];
   double wall_velocity[3];
+  double period[3];
   double domain_low[3];
   double domain_high[3];
   double greatest_speed2;
@@ -34,11 +35,13 @@ typedef struct {
   float speeds_of_walls[18];
   int twice_low[3];
   int twice_high[3];
+  int periods[3];
   int cells[3];
   int cell_bits;
   int reach;
   int support;
   int walls;
+  int sides;
   int no_slip;
   int is_thick;
   int bounces;
@@ -100,7 +103,8 @@ void enter_cell(const Parameters* p, int i, const double* x, const float* w,
   int n[3];
   int c[3];
   for (int k = 0; k < 3; ++k) {
-    const double coordinate = (x[k] - p->origin[k]) * p->inverse_unit;
+    const double image = wrapped(x[k], p->origin[k], p->period[k]);
+    const double coordinate = (image - p->origin[k]) * p->inverse_unit;
     // In this form, a NaN fails.
     const bool fits = coordinate >= -PLACE_LIMIT && coordinate <= PLACE_LIMIT;
     if (!fits) atomic_or(status + kFault, 1);

@@ -81,11 +81,11 @@ float3 turn_at_walls(const Parameters* p, const Surface* s, const int* n, float3
 }
 
 // The normal of the image of a particle: reflected at the contact normal.
-float3 image_normal(const Surface* s, uint code, float3 normal) {
-  if (s->cosine == 0) return turned(code, normal);
+float3 image_normal(const Parameters* p, const Surface* s, uint code, float3 normal) {
+  if (s->cosine == 0) return turned(p, code, normal);
   const Mirror m = mirror_of(code);
   for (int axis = 0; axis < 3; ++axis) {
-    if (m.axes[axis] == 0) continue;
+    if (!reverses(p, &m, axis)) continue;
     const float3 contact = contact_normal(s, normal, axis, m.axes[axis] == 1 ? 1 : -1);
     if (length_of(contact) > 0) normal = 2 * dot_of(contact, normal) * contact - normal;
   }
@@ -111,7 +111,7 @@ kernel void find_surface_normals(const Parameters p, const Surface s, global con
     if (is_solid(source)) continue;
     const float square = square_of(way_from(&p, code, n, source));
     if (!(square < 1)) continue;
-    sum += weight_of(source) * kernel_value(sqrt(square)) * turned(code, surface[j].xyz);
+    sum += weight_of(source) * kernel_value(sqrt(square)) * turned(&p, code, surface[j].xyz);
   })
   const float length = length_of(sum);
   if (!(length > 0)) return;
@@ -149,7 +149,7 @@ kernel void find_curvature_forces(const Parameters p, const Surface s, global co
     pull += share * (s.cohesion * (deficiency + surface[j].w)) * x;
     const float4 its = normals[j];
     if (!is_normal(its)) continue;
-    const float3 other = code == 0 ? its.xyz : image_normal(&s, code, its.xyz);
+    const float3 other = code == 0 ? its.xyz : image_normal(&p, &s, code, its.xyz);
     spread += share * dot_of(normal.xyz - other, x);
     weights += weight_of(source) * kernel_value(q);
   })

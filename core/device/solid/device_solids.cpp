@@ -131,9 +131,8 @@ void DeviceSolids::move(const StepMoment& start, Real end, Real step,
                force_, t.mobility, t.body_of, t.bodies, cells_.cell_of, cells_.rank, cells_.counts,
                counters);
   cells_.sort();
-  program_.run("collect_solids", range_.count, static_cast<std::int32_t>(range_.count),
-               cells_.cell_of, cells_.begins, cells_.unsorted, motion_.position, order_,
-               sorted_position_);
+  program_.run("collect_solids", range_.count, after, cells_.cell_of, cells_.begins,
+               cells_.unsorted, motion_.position, order_, sorted_position_);
   if (model_.cells.empty()) return;
   program_.run(
       "find_cell_pressure", model_.cells.size(), static_cast<std::int32_t>(model_.cells.size()),

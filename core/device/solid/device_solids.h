@@ -53,6 +53,8 @@ class DeviceSolids {
   /// Solves for the damping in a step of `dt` [s] that ends at the time `end` [s]. Returns the
   /// number of conjugate-gradient iterations.
   std::uint32_t solve_damping(Real end, Real dt);
+  /// Moves liquid particles into a periodic world, see DeviceMotion::wrap_liquid().
+  void wrap_liquid() { motion_.wrap_liquid(model_); }
   /// Ends the last step of a call at its time.
   void finish(const StepMoment& moment, Real step, const opencl::Buffer& counters);
 

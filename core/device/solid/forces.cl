@@ -81,6 +81,17 @@ typedef struct {
   double3 spin_change;
 } Other;
 
+Other other_at(const Solids* p, int is_change, int j, int body, global const double* predicted,
+               global const double* change, global const double* spins,
+               global const double* spin_changes, global const double* mass,
+               global const double* radius) {
+  const double3 zero = 0;
+  const Other o = {j, j >= p->free, mass[j], radius[j], vector_at(predicted, j),
+                   is_change ? vector_at(change, j) : zero, vector_at(spins, body),
+                   is_change ? vector_at(spin_changes, body) : zero};
+  return o;
+}
+
 // Vectors from the centres of two particles to their friction point, see contact_arms().
 typedef struct {
   double3 mine;
@@ -151,54 +162,45 @@ void add_contacts(const Solids* p, global const int* begins, global const int* o
                   global const ContactLaw* laws, global const uint* exclusion_begin,
                   global const uint* exclusions, Target* t) {
   const double at[3] = {t->x.x, t->x.y, t->x.z};
-  int low[3];
-  int high[3];
-  for (int k = 0; k < 3; ++k) {
-    low[k] = cell_of_solid(p, at[k] - p->reach, k);
-    high[k] = cell_of_solid(p, at[k] + p->reach, k);
-  }
   const Body mine = bodies[t->body];
-  for (int z = low[2]; z <= high[2]; ++z) {
-    for (int y = low[1]; y <= high[1]; ++y) {
-      const int row = (z * p->cells[1] + y) * p->cells[0];
-      const int end = begins[row + high[0] + 1];
-      for (int slot = begins[row + low[0]]; slot < end; ++slot) {
-        const double3 x = t->x - sorted_position[slot].xyz;
-        const double square = product(x, x);
-        if (!(square < p->reach * p->reach)) continue;
-        const int j = order[slot];
-        const int body = body_of[j];
-        const bool is_own = body == t->body;
-        if (j == t->index || (is_own && !mine.touches_itself)) continue;
-        const int other = bodies[body].material;
-        // Within a liquid, there are other forces.
-        if (t->index < p->liquids && j < p->liquids && mine.material == other) continue;
-        // The laws within bodies follow those between materials.
-        const ContactLaw law =
-            laws[is_own ? p->materials * p->materials + mine.material
-                        : mine.material * p->materials + other];
-        const double touching = t->radius + radius[j];
-        const double threshold = law.threshold > 0 ? law.threshold : touching;
-        if (!(square < threshold * threshold)) continue;
-        if (is_own && is_excluded(exclusion_begin, exclusions, t->index, j)) continue;
-        const double3 zero = 0;
-        const Other o = {j, j >= p->free, mass[j], radius[j], vector_at(predicted, j),
-                         t->is_change ? vector_at(change, j) : zero, vector_at(spins, body),
-                         t->is_change ? vector_at(spin_changes, body) : zero};
-        add_contact(p, law, &o, x, sqrt(square), threshold, t);
-      }
+  FOR_EACH_ROW_OF_SOLIDS(p, at, p->reach, begins, {
+    for (int slot = begin; slot < end; ++slot) {
+      const double3 way = t->x - sorted_position[slot].xyz;
+      const double3 x = way + (double3)(shift[0], shift[1], shift[2]);
+      const double square = product(x, x);
+      if (!(square < p->reach * p->reach)) continue;
+      const int j = order[slot];
+      const int body = body_of[j];
+      const bool is_own = body == t->body;
+      if (j == t->index || (is_own && !mine.touches_itself)) continue;
+      const int other = bodies[body].material;
+      // Within a liquid, there are other forces.
+      if (t->index < p->liquids && j < p->liquids && mine.material == other) continue;
+      // The laws within bodies follow those between materials.
+      const ContactLaw law =
+          laws[is_own ? p->materials * p->materials + mine.material
+                      : mine.material * p->materials + other];
+      const double touching = t->radius + radius[j];
+      const double threshold = law.threshold > 0 ? law.threshold : touching;
+      if (!(square < threshold * threshold)) continue;
+      if (is_own && is_excluded(exclusion_begin, exclusions, t->index, j)) continue;
+      const Other o = other_at(p, t->is_change, j, body, predicted, change, spins, spin_changes, mass,
+                               radius);
+      add_contact(p, law, &o, x, sqrt(square), threshold, t);
     }
-  }
+  })
 }
 
-// Adds the springs of the target, see add_spring_forces(). `velocity` is the change of the
+// Adds the springs of the target, see add_spring_forces(). In a periodic world, they do not cross its
+// sides. `velocity` is the change of the
 // velocities if t->is_change is set.
 void add_springs(const Solids* p, global const uint* begins, global const SpringEnd* ends,
                  global const double* position, global const double* velocity, Target* t) {
   const double3 mine = t->is_change ? t->w : t->v;
+  const double3 own = vector_at(position, t->index);
   for (uint s = begins[t->index]; s < begins[t->index + 1]; ++s) {
     const SpringEnd spring = ends[s];
-    const double3 x = t->x - vector_at(position, spring.other);
+    const double3 x = own - vector_at(position, spring.other);
     const double r = sqrt(product(x, x));
     const double3 n = direction_of(p, x, r, t->index, spring.other);
     const double speed = product(mine - vector_at(velocity, spring.other), n);

@@ -4,6 +4,7 @@
 
 typedef struct {
   double origin[3];
+  double period[3];
   double inverse_cell;
   double gravity[3];
   double offset[3];
@@ -63,11 +64,53 @@ int cell_of_solid(const Solids* p, double coordinate, int axis) {
   return convert_int_sat(clamp(cell, 0.0, (double)(p->cells[axis] - 1)));
 }
 
+double wrapped_solid(const Solids* p, double coordinate, int axis) {
+  return wrapped(coordinate, p->origin[axis], p->period[axis]);
+}
+
+// Runs BODY for each `shift` between periodic images that may bring particles within `radius` of the
+// place `at`: also for no shift. The vector from a particle to its neighbour includes the shift.
+#define FOR_EACH_SHIFT(p, at, radius, BODY)                                    \
+  {                                                                            \
+    int first[3];                                                              \
+    int last[3];                                                               \
+    for (int k = 0; k < 3; ++k) {                                              \
+      const double from_low = at[k] - (p)->origin[k];                          \
+      const bool repeats = (p)->period[k] > 0;                                 \
+      const double margin = (radius) * (1 + 1e-6); /* above rounding errors */ \
+      first[k] = repeats && (p)->period[k] - from_low <= margin ? -1 : 0;      \
+      last[k] = repeats && from_low <= margin ? 1 : 0;                         \
+    }                                                                          \
+    for (int image_z = first[2]; image_z <= last[2]; ++image_z) {              \
+      for (int image_y = first[1]; image_y <= last[1]; ++image_y) {            \
+        for (int image_x = first[0]; image_x <= last[0]; ++image_x) {          \
+          const double shift[3] = {image_x * (p)->period[0],                   \
+                                   image_y * (p)->period[1],                   \
+                                   image_z * (p)->period[2]};                  \
+          BODY                                                                 \
+        }                                                                      \
+      }                                                                        \
+    }                                                                          \
+  }
+
+// Runs BODY for each row of cells within `radius` of the place `at`, with the slots [begin, end).
+// BODY adds `shift` to vectors from the particles of these slots.
+#define FOR_EACH_ROW_OF_SOLIDS(p, at, radius, begins, BODY)                    \
+  FOR_EACH_SHIFT(p, at, radius, {                                              \
+    int low[3];                                                                \
+    int high[3];                                                               \
+    for (int k = 0; k < 3; ++k) {                                              \
+      low[k] = cell_of_solid(p, at[k] + shift[k] - (radius), k);               \
+      high[k] = cell_of_solid(p, at[k] + shift[k] + (radius), k);              \
+    }                                                                          \
+    FOR_EACH_ROW_IN(p, low, high, begins, BODY)                                \
+  })
+
 // Adds a particle to its cell.
 void enter_solid(const Solids* p, int i, const double* x, global int* cell_of, global int* rank,
                  global int* cell_counts) {
   int c[3];
-  for (int k = 0; k < 3; ++k) c[k] = cell_of_solid(p, x[k], k);
+  for (int k = 0; k < 3; ++k) c[k] = cell_of_solid(p, wrapped_solid(p, x[k], k), k);
   const int cell = (c[2] * p->cells[1] + c[1]) * p->cells[0] + c[0];
   cell_of[i] = cell;
   rank[i] = atomic_inc(cell_counts + cell);
@@ -162,14 +205,17 @@ kernel void finish_solids(const Solids p, global double* position, global double
   }
 }
 
-// Copies the positions in the order of cells; see collect.
-kernel void collect_solids(const int count, global const int* cell_of, global const int* begins,
+// Copies the positions in the order of cells; see collect. In a periodic world, the copies are in its
+// box.
+kernel void collect_solids(const Solids p, global const int* cell_of, global const int* begins,
                            global const int* unsorted, global const double* position,
                            global int* order, global double4* sorted_position) {
   const int t = get_global_id(0);
-  if (t >= count) return;
+  if (t >= p.count) return;
   const int i = unsorted[t];
   const int slot = slot_in_cell(i, cell_of, begins, unsorted);
   order[slot] = i;
-  sorted_position[slot] = (double4)(vector_at(position, i), 0);
+  const double3 x = vector_at(position, i);
+  sorted_position[slot] = (double4)(wrapped_solid(&p, x.x, 0), wrapped_solid(&p, x.y, 1),
+                                    wrapped_solid(&p, x.z, 2), 0);
 }

@@ -44,6 +44,9 @@ void SolidGeometry::set_grid(const Model& model) {
     cell *= 2;
   } while (count > most);
   store(low, constant_.origin);
+  for (int axis = 0; axis < 3; ++axis) {
+    constant_.period[axis] = model.periodic.repeats(axis) ? model.periodic.length(axis) : 0;
+  }
 }
 
 SolidGeometry::SolidGeometry(const Model& model, const GuardBounds& bounds) {

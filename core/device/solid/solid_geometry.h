@@ -11,7 +11,8 @@ namespace vat {
 
 /// The struct Solids of core/device/solid/particles.cl, with the same members in the same order.
 struct SolidParameters {
-  double origin[3];     ///< of the cells [m]
+  double origin[3];     ///< of the cells, and of a periodic box [m]
+  double period[3];     ///< length along periodic axes; 0 along others [m]
   double inverse_cell;  ///< [1/m]
   double gravity[3];    ///< [m/s^2]
   double offset[3];     ///< displacement of the vat [m]

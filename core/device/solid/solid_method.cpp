@@ -30,6 +30,7 @@ bool SolidMethod::take_nominal_steps(const NominalSteps& steps, AdvanceReport& r
   for (std::uint32_t s = 0; s < steps.count; ++s) {
     solids_.integrate(steps.time(s), steps.time(s + 1), steps.step, counters_.buffer,
                       [&](Real time) { evaluate_at_start(time, report); });
+    wrap_liquid();
   }
   report.count_steps(steps.count, steps.step, steps.step);
   return true;

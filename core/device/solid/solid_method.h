@@ -35,6 +35,7 @@ class SolidMethod : public VerletMethod {
   bool must_solve(Real dt) const override { return solids_.must_solve(dt); }
   std::uint32_t solve_damping(Real end, Real dt) override { return solids_.solve_damping(end, dt); }
   void finish(const StepMoment& moment) override;
+  void wrap_liquid() override { solids_.wrap_liquid(); }
   bool take_nominal_steps(const NominalSteps& steps, AdvanceReport& report) override;
   bool keeps_forces() const;
 

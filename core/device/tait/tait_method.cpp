@@ -93,6 +93,7 @@ class TaitMethod : public VerletMethod {
     return solids_->solve_damping(end, dt);
   }
   void finish(const StepMoment& moment) override;
+  void wrap_liquid() override { now_.motion.wrap_liquid(model()); }
   bool take_nominal_steps(const NominalSteps& steps, AdvanceReport& report) override;
   void copy(const TaitState& from, TaitState& to);
   /// Moves the liquid, and computes its accelerations.
@@ -278,6 +279,7 @@ bool TaitMethod::take_nominal_steps(const NominalSteps& steps, AdvanceReport& re
           has_forces = true;
           return take_part(part, report);
         });
+    wrap_liquid();
   }
   return is_valid;
 }

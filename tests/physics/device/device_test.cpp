@@ -183,11 +183,6 @@ TEST(Device, RefusesFeaturesThatItLacks) {
          s.bodies[1].material = "oil";
          s.bodies[1].shape = SphereShape{{0.25, 0.06, 0.3}, 0.03};
        }},
-      {"/periodic",
-       [](Scene& s) {
-         s.vat.reset();
-         s.periodic = Periodicity{{0, 0, 0}, {0.4, 0.4, 0.4}, {true, false, false}};
-       }},
       {"/central_field",
        [](Scene& s) {
          s.central_field = CentralField{{0, 0, 0}, 1};
