@@ -94,7 +94,6 @@ void Missing::check_world() {
 
 void Missing::check_gas() {
   reject(may_solve_viscosity(model_), "/numerics/step", "must resolve the viscosity of the liquid");
-  reject(!model_.no_slip_walls.empty(), "/vat/walls", "must be slip walls with gas");
   check_solids();
 }
 

@@ -16,12 +16,14 @@ using opencl::Program;
 
 /// The struct Gas of forces.cl.
 struct Gas {
-  double support, density_scale, pressure_slope, viscosity, rest_density, stiffness;
+  double support, density_scale, pressure_slope, viscosity, rest_density, stiffness, wall_viscosity;
 };
 /// The struct GasStep of forces.cl.
 struct GasStep {
   double drag;
   double still[3];
+  std::int32_t no_slip;
+  std::int32_t padding;
 };
 
 constexpr std::size_t kVolumeAndPressure = 2 * sizeof(double);
@@ -35,7 +37,8 @@ Gas gas_of(const Model& model, const LiquidModel& liquid) {
           -liquid.pressure_kernel.slope(0) / (h * h),
           acting.viscosity ? liquid.viscosity * liquid.viscosity_kernel.laplacian_scale() : 0,
           liquid.rest_density,
-          acting.pressure ? liquid.pressure_share * liquid.stiffness : 0};
+          acting.pressure ? liquid.pressure_share * liquid.stiffness : 0,
+          acting.viscosity ? liquid.viscosity : 0};
 }
 
 Buffer make_gases(Program& program, const Model& model) {
@@ -55,6 +58,7 @@ GasStep step_of(const Model& model, Real end) {
     step.drag = scene.settling->drag;
     if (scene.vat) store(vat_motion(*scene.vat, end).velocity, step.still);
   }
+  for (const int wall : model.no_slip_walls) step.no_slip |= 1 << wall;
   return step;
 }
 
@@ -78,7 +82,7 @@ void DeviceGas::add_forces(const Model& model, const DeviceSolids& bodies, Real 
   const PlacedSolids at = bodies.placed();
   const SolidTables& t = at.tables;
   const GasStep step = step_of(model, end);
-  program_.run("find_gas_pressure", model.particle_count, p, at.cells.begins, at.order,
+  program_.run("find_gas_pressure", model.particle_count, p, step, at.cells.begins, at.order,
                at.sorted_position, at.predicted, t.mass, t.body_of, t.bodies, gases_,
                volume_and_pressure_, sorted_velocity_);
   program_.run("add_gas_forces", model.particle_count, p, step, at.cells.begins, at.order,

@@ -10,11 +10,14 @@ typedef struct {
   double viscosity;       // mu times the scale of the Laplacian of the viscosity kernel
   double rest_density;
   double stiffness;       // pressure / excess of density, times the share of the pressure
+  double wall_viscosity;  // mu
 } Gas;
 
 typedef struct {
   double drag;      // of settling, 1/s
   double still[3];  // velocity that the settling drag leaves
+  int no_slip;      // bit w: liquid does not slip along wall w
+  int padding;
 } GasStep;
 
 // Runs BODY for each particle `j` in `slot` that is closer to the place `at` than `support`, and of
@@ -36,8 +39,9 @@ typedef struct {
   }
 
 // The volume of each particle, its pressure times the share, and its velocity in forces. All are in
-// the order of cells.
-kernel void find_gas_pressure(const Solids p, global const int* begins,
+// the order of cells. The fourth component of `sorted_velocity` is the density / that with liquid beyond
+// no-slip walls.
+kernel void find_gas_pressure(const Solids p, const GasStep step, global const int* begins,
                               global const int* order, global const double4* sorted_position,
                               global const double* predicted, global const double* mass,
                               global const int* body_of, global const Body* bodies,
@@ -59,10 +63,12 @@ kernel void find_gas_pressure(const Solids p, global const int* begins,
   const double density = gas.density_scale * sum;
   volume_and_pressure[own_slot] =
       (double2)(mass[i] / density, gas.stiffness * fmax(0.0, density - gas.rest_density));
-  sorted_velocity[own_slot] = (double4)(vector_at(predicted, i), 0);
+  const double filling = filling_beyond_walls(&p, step.no_slip, support, at);
+  sorted_velocity[own_slot] = (double4)(vector_at(predicted, i),
+                                        density / (density + gas.rest_density * filling));
 }
 
-// Adds the forces of pressure, viscosity and settling.
+// Adds the forces of pressure, viscosity, no-slip walls and settling.
 kernel void add_gas_forces(const Solids p, const GasStep step, global const int* begins,
                            global const int* order, global const double4* sorted_position,
                            global const double2* volume_and_pressure,
@@ -78,6 +84,7 @@ kernel void add_gas_forces(const Solids p, const GasStep step, global const int*
   const double support = gas.support;
   const double3 at = sorted_position[own_slot].xyz;
   const double3 v = sorted_velocity[own_slot].xyz;
+  const double filled = sorted_velocity[own_slot].w;
   const double2 own = volume_and_pressure[own_slot];
   double3 sum = 0;
   FOR_EACH_GAS_NEIGHBOUR({
@@ -86,9 +93,12 @@ kernel void add_gas_forces(const Solids p, const GasStep step, global const int*
     const double2 other = volume_and_pressure[slot];
     const double push = (own.y + other.y) * gas.pressure_slope * (rest * rest);
     const double3 relative = sorted_velocity[slot].xyz - v;
-    sum += other.x * (push * direction_of(&p, way, r, i, j) + gas.viscosity * rest * relative);
+    const double viscosity = gas.viscosity * rest * (filled * sorted_velocity[slot].w);
+    sum += other.x * (push * direction_of(&p, way, r, i, j) + viscosity * relative);
   })
   const double3 still = (double3)(step.still[0], step.still[1], step.still[2]);
-  const double3 own_force = own.x * sum - (mass[i] * step.drag) * (v - still);
+  const double3 of_walls = drag_of_walls(&p, step.no_slip, support,
+                                         gas.wall_viscosity * (own.x * filled), at, v);
+  const double3 own_force = own.x * sum + of_walls - (mass[i] * step.drag) * (v - still);
   store_vector(vector_at(force, i) + own_force, force, i);
 }

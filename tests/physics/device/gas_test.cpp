@@ -69,6 +69,13 @@ const SceneCase kScenes[] = {
      [](Scene& scene) {
        add_solid(scene, BodyKind::deformable, {0.09, 0.06, 0.205});
      }},
+    {"no-slip walls that move", set_no_slip},
+    {"no-slip walls in two dimensions",
+     [](Scene& scene) {
+       set_plane_of_liquid(scene);
+       set_no_slip(scene);
+       scene.vat->walls[2] = {};  // there is no wall along the plane
+     }},
     {"without viscosity", [](Scene& scene) { scene.forces.viscosity = false; }},
     {"without pressure", [](Scene& scene) { scene.forces.pressure = false; }},
     {"without damping",
@@ -161,7 +168,6 @@ TEST(GasDevice, LeavesAFailedStepToTheCpu) {
 
 TEST(GasDevice, RefusesFeaturesThatItLacks) {
   const SceneCase cases[] = {
-      {"/vat/walls", [](Scene& s) { s.vat->walls[4].no_slip = true; }},
       {"/numerics/step", [](Scene& s) { s.materials[0].liquid->viscosity = 2000; }},
       {"/numerics/control", [](Scene& s) { s.numerics.control = StepControl::adaptive; }},
       {"/central_field", [](Scene& s) { s.central_field = CentralField{}; }},

@@ -106,6 +106,14 @@ inline void add_fixed_bodies(Scene& scene) {
   scene.bodies.push_back(make_fixed("step", BoxShape{{0.22, 0.09, 0.03}, {0.1, 0.06, 0.06}}, 0.02));
 }
 
+/// Sets two dimensions in a scene with a vat and a box of liquid.
+inline void set_plane_of_liquid(Scene& scene) {
+  scene.dimensions = 2;
+  std::get<BoxShape>(scene.bodies[0].shape).center.y() = 0;
+  scene.vat->min.y() = -1;
+  scene.vat->max.y() = 1;
+}
+
 /// Changes of a scene with a vat and a box of liquid as its first body, for any solver.
 inline const SceneCase kCommonScenes[] = {
     {"unchanged", [](Scene&) {}},
@@ -118,13 +126,7 @@ inline const SceneCase kCommonScenes[] = {
      [](Scene& scene) {
        scene.vat->motion = SlideMotion{Vec3(1, 0, 0.5).normalized(), 0.1, 0.2};
      }},
-    {"two dimensions",
-     [](Scene& scene) {
-       scene.dimensions = 2;
-       std::get<BoxShape>(scene.bodies[0].shape).center.y() = 0;
-       scene.vat->min.y() = -1;
-       scene.vat->max.y() = 1;
-     }},
+    {"two dimensions", set_plane_of_liquid},
     {"settling",
      [](Scene& scene) {
        scene.settling = Settling{20, 0.015};

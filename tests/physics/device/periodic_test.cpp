@@ -41,12 +41,9 @@ void set_drop(Scene& scene) {
 }
 
 void set_plane(Scene& scene) {
-  scene.dimensions = 2;
+  set_plane_of_liquid(scene);
   scene.periodic->axes[1] = false;
-  std::get<BoxShape>(scene.bodies[0].shape).center.y() = 0;
   scene.bodies[0].velocity.y() = 0;
-  scene.vat->min.y() = -1;
-  scene.vat->max.y() = 1;
 }
 
 void make_solids_of(Scene& scene, std::initializer_list<BodyKind> kinds) {
