@@ -142,8 +142,6 @@ void Missing::check_materials() {
     const Material& material = scene_.materials[m];
     const std::string path = "/materials/" + std::to_string(m);
     reject(material.implicit_springs, path + "/implicit_springs", "must be false");
-    reject(material.plasticity.has_value(), path + "/plasticity", "must be absent");
-    reject(material.tearing_strain.has_value(), path + "/tearing_strain", "must be absent");
     reject(material.elongation_limit.has_value(), path + "/elongation_limit", "must be absent");
   }
 }

@@ -57,6 +57,7 @@ DeviceSolids::DeviceSolids(Program& program, const Model& model, const GuardBoun
       greatest_(program, sizeof(Bound)),
       damping_(program, model) {
   if (!keeps_forces(model)) integration_.emplace(program, model);
+  if (model.springs_change) spring_changes_.emplace(program, model);
 }
 
 std::size_t DeviceSolids::bytes_for(const Model& model) {
@@ -67,7 +68,8 @@ std::size_t DeviceSolids::bytes_for(const Model& model) {
          model.cells.size() * sizeof(double) +
          (groups_of_solids(model) + model.rigid_bodies.size() + 1) * sizeof(Bound) +
          DeviceRigidBodies::bytes_for(model) + DeviceDamping::bytes_for(model) +
-         (keeps_forces(model) ? 0 : DeviceIntegration::bytes_for(model));
+         (keeps_forces(model) ? 0 : DeviceIntegration::bytes_for(model)) +
+         (model.springs_change ? DeviceSpringChanges::bytes_for(model) : 0);
 }
 
 void DeviceSolids::write(const State& state) {
@@ -77,6 +79,7 @@ void DeviceSolids::write(const State& state) {
   program_.write(force_, std::span<const Vec3>(state.forces.particle).subspan(range_.first));
   rigid_.write(model_, state);
   damping_.find_mass(model_, state.step_count);
+  if (spring_changes_) spring_changes_->write(model_, state.now, tables_);
 }
 
 void DeviceSolids::read() {
@@ -86,6 +89,7 @@ void DeviceSolids::read() {
     program_.read(force_, std::span<Vec3>(read_forces_));
   }
   rigid_.read();
+  if (spring_changes_) spring_changes_->read(tables_);
 }
 
 void DeviceSolids::copy_to(State& state) const {
@@ -98,6 +102,7 @@ void DeviceSolids::copy_to(State& state) const {
   std::fill(begin + static_cast<std::ptrdiff_t>(range_.free), forces.particle.end(), Vec3::Zero());
   if (model_.has_friction) forces.friction_torque.assign(model_.particle_count, Vec3::Zero());
   rigid_.copy_to(state);
+  if (spring_changes_) spring_changes_->copy_to(state.now);
   for (std::size_t b = 0; b < rigid_.count(); ++b) {
     pose_rigid_body(model_, model_.rigid_bodies[b], state.now.rigid[b], state.now);
   }
@@ -107,6 +112,7 @@ void DeviceSolids::save() {
   saved_motion_.copy_from(motion_);
   program_.copy(force_, saved_force_, range_.count * kVector);
   rigid_.save();
+  if (spring_changes_) spring_changes_->save(tables_);
   saved_bound_ = bound_;
 }
 
@@ -114,6 +120,7 @@ void DeviceSolids::restore() {
   motion_.copy_from(saved_motion_);
   program_.copy(saved_force_, force_, range_.count * kVector);
   rigid_.restore();
+  if (spring_changes_) spring_changes_->restore(tables_);
   bound_ = saved_bound_;
 }
 
@@ -133,6 +140,7 @@ void DeviceSolids::move(const StepMoment& start, Real end, Real step,
   cells_.sort();
   program_.run("collect_solids", range_.count, after, cells_.cell_of, cells_.begins,
                cells_.unsorted, motion_.position, order_, sorted_position_);
+  if (start.drift > 0) change_springs();
   if (model_.cells.empty()) return;
   program_.run(
       "find_cell_pressure", model_.cells.size(), static_cast<std::int32_t>(model_.cells.size()),

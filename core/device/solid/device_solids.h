@@ -12,6 +12,7 @@
 #include "core/device/solid/device_damping.h"
 #include "core/device/solid/device_integration.h"
 #include "core/device/solid/device_rigid_bodies.h"
+#include "core/device/solid/device_spring_changes.h"
 #include "core/device/solid/solid_geometry.h"
 #include "core/device/solid/solid_tables.h"
 #include "core/model/model.h"
@@ -80,7 +81,10 @@ class DeviceSolids {
       integration_->end(at_end, dt, solids, counters);
     }
     rigid_.pose(at_end, motion_.position, predicted_, counters);
+    change_springs();
   }
+  /// Returns whether springs flow or tear.
+  bool springs_change() const { return spring_changes_.has_value(); }
 
   /// Returns the parameters of the kernels of forces at the time `end` [s].
   SolidParameters parameters(Real end) const { return geometry_.at(model_, {end, 0, 0, 0, 0}); }
@@ -99,6 +103,9 @@ class DeviceSolids {
 
  private:
   void find_bound();
+  void change_springs() {
+    if (spring_changes_) spring_changes_->change(motion_.position, tables_);
+  }
 
   opencl::Program& program_;
   const Model& model_;
@@ -116,7 +123,8 @@ class DeviceSolids {
   opencl::Buffer pressure_;                               ///< by cell of deformable bodies
   opencl::Buffer partial_, bounds_of_bodies_, greatest_;  ///< bounds of groups, rigid bodies, all
   DeviceDamping damping_;
-  std::optional<DeviceIntegration> integration_;  ///< of integrators without a closing kick
+  std::optional<DeviceIntegration> integration_;       ///< of integrators without a closing kick
+  std::optional<DeviceSpringChanges> spring_changes_;  ///< only if springs change
   ReadMotion read_;
   std::vector<Vec3> read_forces_;
   Oscillation bound_, saved_bound_;  ///< of the last forces

@@ -33,7 +33,8 @@ bool SolidMethod::take_nominal_steps(const NominalSteps& steps, AdvanceReport& r
     wrap_liquid();
   }
   report.count_steps(steps.count, steps.step, steps.step);
-  return true;
+  // Springs change before walls stop their particles.
+  return !solids_.springs_change() || counters_.read().stops == 0;
 }
 
 void SolidMethod::move(const StepMoment& start, Real end) {

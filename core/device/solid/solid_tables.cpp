@@ -98,6 +98,13 @@ Buffer shifted_table_of(Program& program, const SharedArray<T>& values, Shift&& 
 
 }  // namespace
 
+std::vector<SpringEnd> springs_on_device(const Model& model) {
+  const auto first = static_cast<Index>(SolidRange(model).first);
+  std::vector<SpringEnd> ends(model.spring_ends.begin(), model.spring_ends.end());
+  for (SpringEnd& end : ends) end.other -= first;
+  return ends;
+}
+
 SolidTables::SolidTables(Program& program, const Model& model, const GuardBounds& bounds) {
   const SolidRange range(model);
   const auto shift = [&](Index& particle) { particle -= static_cast<Index>(range.first); };
@@ -110,7 +117,7 @@ SolidTables::SolidTables(Program& program, const Model& model, const GuardBounds
   exclusion_begin = begins_of(program, range, model.exclusion_begin);
   exclusions = shifted_table_of(program, model.exclusions, shift);
   spring_begin = begins_of(program, range, model.spring_begin);
-  springs = shifted_table_of(program, model.spring_ends, [&](SpringEnd& end) { shift(end.other); });
+  springs = table_of(program, springs_on_device(model));
   corner_begin = begins_of(program, range, model.cell_begin);
   corners = table_of(program, model.cell_corners);
   cells = shifted_table_of(program, model.cells, [&](VolumeCell& cell) {

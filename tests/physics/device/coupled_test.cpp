@@ -132,6 +132,11 @@ const SceneCase kDeformableScenes[] = {
        add_jelly(scene);
        scene.materials[2].bulk_modulus = 2000;
      }},
+    {"plastic jelly",
+     [](Scene& scene) {
+       add_jelly(scene);
+       scene.materials[2].plasticity = Plasticity{.yield_strain = 0};
+     }},
     {"jelly and piston in two dimensions",
      [](Scene& scene) {
        add_jelly(scene);

@@ -294,8 +294,6 @@ TEST(DeformableDevice, RefusesFeaturesThatItLacks) {
   const SceneCase cases[] = {
       {"/numerics/control", [](Scene& s) { s.numerics.control = StepControl::adaptive; }},
       {"/materials/0/implicit_springs", [](Scene& s) { s.materials[0].implicit_springs = true; }},
-      {"/materials/0/plasticity", [](Scene& s) { s.materials[0].plasticity = Plasticity{}; }},
-      {"/materials/0/tearing_strain", [](Scene& s) { s.materials[0].tearing_strain = 0.5; }},
       {"/materials/0/elongation_limit", [](Scene& s) { s.materials[0].elongation_limit = 0.5; }},
       {"/default_interface", [](Scene& s) { s.default_interface.law = InterfaceLaw::projection; }},
       {"/default_interface",
