@@ -88,7 +88,6 @@ void Missing::check_bodies() {
 void Missing::check_world() {
   reject(!scene_.emitters.empty(), "/emitters", "must be empty");
   reject(!scene_.drains.empty(), "/drains", "must be empty");
-  reject(scene_.central_field.has_value(), "/central_field", "must be absent");
   reject(scene_.sleeping.has_value(), "/sleeping", "must be absent");
 }
 
@@ -113,6 +112,10 @@ void Missing::check_liquid() {
   reject(may_solve_viscosity(model_), "/numerics/step", "must resolve the viscosity of the liquid");
   reject(is_incompressible() && model_.has_surface_tension, "/materials",
          "must have no surface tension with the pressure solver incompressible");
+  reject(scene_.central_field && (is_incompressible() || !model_.walls.empty() ||
+                                  model_.particle_count > model_.liquid_count),
+         "/central_field",
+         "must be absent in a scene with walls, solids or an incompressible liquid");
   reject(model_.is_filled, "/vat/lid", "must be false for a vat full of liquid");
   if (!solids_move(model_)) return;
   check_materials();

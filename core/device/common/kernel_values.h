@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "core/device/opencl/program.h"
+#include "core/scene/scene.h"
 #include "core/types.h"
 
 /// Conversions to arguments of kernels.
@@ -27,6 +28,15 @@ inline void store(const Mat3& from, double (&to)[9]) {
 /// Stores x, y, z and w.
 inline void store(const Quat& from, double (&to)[4]) {
   for (int k = 0; k < 4; ++k) to[k] = from.coeffs()[k];
+}
+
+/// Stores the central field that acts in a scene, if any.
+template <class Parameters>
+void store_central_field(const Scene& scene, Parameters& parameters) {
+  if (!scene.forces.gravity || !scene.central_field) return;
+  const CentralField& field = *scene.central_field;
+  store(field.center, parameters.field_center);
+  parameters.field_strength = field.angular_frequency * field.angular_frequency;
 }
 
 /// Returns a count as an argument of a kernel.

@@ -85,6 +85,7 @@ LiquidGeometry::LiquidGeometry(const Model& model, const GuardBounds& bounds) {
   VAT_CHECK(model.liquid_count > 0);
   set_grid(model);
   const LiquidModel& liquid = *model.liquids[model.material[0]];
+  store_central_field(model.scene, constant_);
   store(bounds.min, constant_.domain_low);
   store(bounds.max, constant_.domain_high);
   travel_ = bounds.travel[model.body[0]];

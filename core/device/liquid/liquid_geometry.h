@@ -24,6 +24,8 @@ struct LiquidParameters {
   double opening;          ///< duration of the kick at the start of a step [s]
   double drift;            ///< [s]
   double prediction;       ///< duration of the kick of velocities in viscous forces [s]
+  double field_center[3];  ///< of the central field [m]
+  double field_strength;   ///< acceleration / distance from the center; 0 without a field [1/s^2]
   float gravity[3];
   float still[3];      ///< velocity that the settling drag leaves [m/s]
   float drag;          ///< of settling [1/s]

@@ -267,6 +267,12 @@ void add_force_of(const Parameters* p, uint code, const int* n, int is_target_so
   }
 }
 
+// The acceleration by the central field at the integer position n.
+float field_at(const Parameters* p, int n, int axis) {
+  const double x = p->origin[axis] + n / p->inverse_unit;
+  return (float)(p->field_strength * (p->field_center[axis] - x));
+}
+
 // The acceleration of the particle in `slot` by pressure, viscosity, gravity and settling.
 float3 acceleration_of(const Parameters* p, int slot, global const int* begins,
                        global const int4* sorted_place, global const float4* sorted_motion,
@@ -282,6 +288,7 @@ float3 acceleration_of(const Parameters* p, int slot, global const int* begins,
   float a[3];
   for (int k = 0; k < 3; ++k) {
     a[k] = p->gravity[k] + p->slope_factor * sum[k] - p->drag * (v[k] - p->still[k]);
+    if (p->field_strength > 0) a[k] += field_at(p, n[k], k);
   }
   return (float3)(a[0], a[1], a[2]);
 }

@@ -19,6 +19,8 @@ typedef struct {
   double opening;
   double drift;
   double prediction;
+  double field_center[3];
+  double field_strength;
   float gravity[3];
   float still[3];
   float drag;

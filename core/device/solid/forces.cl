@@ -380,6 +380,12 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_solid_forces
         target_at(&p, i, sorted_position[slot].xyz, predicted, spins, mass, radius, body_of);
     const Body body = bodies[t.body];
     t.force = t.mass * (double3)(p.gravity[0], p.gravity[1], p.gravity[2]);
+    if (p.field_strength > 0) {
+      const double3 arm =
+          vector_at(position, i) -
+          (double3)(p.field_center[0], p.field_center[1], p.field_center[2]);
+      t.force -= (t.mass * p.field_strength) * arm;
+    }
     if (p.reach > 0) {
       add_contacts(&p, begins, order, sorted_position, predicted, predicted, spins, spins, mass,
                    radius, body_of, bodies, laws, exclusion_begin, exclusions, &t);

@@ -7,6 +7,8 @@ typedef struct {
   double period[3];
   double inverse_cell;
   double gravity[3];
+  double field_center[3];
+  double field_strength;
   double offset[3];
   double wall_low[3];
   double wall_high[3];

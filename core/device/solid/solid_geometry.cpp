@@ -55,6 +55,7 @@ SolidGeometry::SolidGeometry(const Model& model, const GuardBounds& bounds) {
   set_grid(model);
   const Scene& scene = model.scene;
   store(scene.forces.gravity ? scene.gravity : Vec3(Vec3::Zero()), constant_.gravity);
+  store_central_field(scene, constant_);
   store(bounds.min, constant_.domain_low);
   store(bounds.max, constant_.domain_high);
   constant_.reach = has_contact_forces(model) ? model.contact_reach : 0;

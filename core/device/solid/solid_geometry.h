@@ -11,12 +11,14 @@ namespace vat {
 
 /// The struct Solids of core/device/solid/particles.cl, with the same members in the same order.
 struct SolidParameters {
-  double origin[3];     ///< of the cells, and of a periodic box [m]
-  double period[3];     ///< length along periodic axes; 0 along others [m]
-  double inverse_cell;  ///< [1/m]
-  double gravity[3];    ///< [m/s^2]
-  double offset[3];     ///< displacement of the vat [m]
-  double wall_low[3];   ///< without the displacement [m]
+  double origin[3];        ///< of the cells, and of a periodic box [m]
+  double period[3];        ///< length along periodic axes; 0 along others [m]
+  double inverse_cell;     ///< [1/m]
+  double gravity[3];       ///< [m/s^2]
+  double field_center[3];  ///< of the central field [m]
+  double field_strength;   ///< acceleration / distance from the center; 0 without a field [1/s^2]
+  double offset[3];        ///< displacement of the vat [m]
+  double wall_low[3];      ///< without the displacement [m]
   double wall_high[3];
   double plane_low[3];  ///< first coordinate inside, with the displacement [m]
   double plane_high[3];

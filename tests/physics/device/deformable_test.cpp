@@ -304,10 +304,6 @@ TEST(DeformableDevice, RefusesFeaturesThatItLacks) {
          s.interfaces[0].constants.restitution = 0.5;
        }},
       {"/sleeping", [](Scene& s) { s.sleeping = Sleeping{}; }},
-      {"/central_field",
-       [](Scene& s) {
-         s.central_field = CentralField{{0, 0, 0}, 1};
-       }},
   };
   expect_refusals(make_blocks(), cases);
 }

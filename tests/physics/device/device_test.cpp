@@ -41,6 +41,12 @@ const SceneCase kScenes[] = {
        scene.numerics.step = scene.numerics.tick = 5e-4;
      }},
     {"without a vat", [](Scene& scene) { scene.vat.reset(); }},
+    {"central field",
+     [](Scene& scene) {
+       scene.vat.reset();
+       scene.gravity = {0, 0, -1};
+       scene.central_field = CentralField{{0.1, 0.05, 0.2}, 12};
+     }},
     {"without gravity",
      [](Scene& scene) {
        scene.forces.gravity = false;

@@ -69,6 +69,13 @@ const SceneCase kScenes[] = {
      [](Scene& scene) {
        add_solid(scene, BodyKind::deformable, {0.09, 0.06, 0.205});
      }},
+    {"central field and a solid",
+     [](Scene& scene) {
+       scene.vat.reset();
+       scene.gravity.setZero();
+       scene.central_field = CentralField{{0.08, 0.05, 0.2}, 12};
+       add_solid(scene, BodyKind::deformable, {0.25, 0.06, 0.3});
+     }},
     {"no-slip walls that move", set_no_slip},
     {"no-slip walls in two dimensions",
      [](Scene& scene) {
@@ -170,7 +177,6 @@ TEST(GasDevice, RefusesFeaturesThatItLacks) {
   const SceneCase cases[] = {
       {"/numerics/step", [](Scene& s) { s.materials[0].liquid->viscosity = 2000; }},
       {"/numerics/control", [](Scene& s) { s.numerics.control = StepControl::adaptive; }},
-      {"/central_field", [](Scene& s) { s.central_field = CentralField{}; }},
   };
   expect_refusals(make_pool(), cases);
 }

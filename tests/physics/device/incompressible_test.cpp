@@ -311,6 +311,11 @@ TEST(IncompressibleDevice, RefusesFeaturesThatItLacks) {
       {"/numerics/control", [](Scene& s) { s.numerics.control = StepControl::local; }},
       {"/numerics/step", [](Scene& s) { s.materials[0].liquid->viscosity = 200; }},
       {"/kernel", [](Scene& s) { s.kernel = KernelId::cubic_spline; }},
+      {"/central_field",
+       [](Scene& s) {
+         s.vat.reset();
+         s.central_field = CentralField{{0.1, 0.1, 0.1}, 1};
+       }},
       {"/materials",
        [](Scene& s) {
          s.materials[0].liquid->surface_tension = 0.07;
