@@ -11,19 +11,7 @@ namespace {
 
 using opencl::Program;
 
-constexpr int kFurtherIterations = 2;  // in a batch, if a solve needs more than expected
 constexpr std::size_t kColumn = 3 * sizeof(double);
-
-/// The struct DampingProgress of damping.cl.
-struct DampingProgress {
-  double error;
-  double size;
-  double permitted;
-  double length;
-  double share;
-  std::int32_t iterations;
-  std::int32_t is_open;
-};
 
 /// The bytes of the partial sums of the groups of particles and of the rigid bodies.
 std::size_t bytes_of_sums(const Model& model) {
@@ -38,6 +26,15 @@ std::size_t bytes_of_vector(const Model& model) {
 }
 
 }  // namespace
+
+DampingParameters damping_parameters(Real dt, Real total_mass, std::size_t count) {
+  return {dt,
+          total_mass,
+          kDampingTolerance * kDampingTolerance,
+          kDampingVelocityTolerance * kDampingVelocityTolerance,
+          number_of(count),
+          kMaxDampingPasses};
+}
 
 DeviceDamping::DeviceDamping(Program& program, const Model& model)
     : program_(program),
@@ -131,28 +128,15 @@ void DeviceDamping::iterate(const SolidParameters& p, const DampingParameters& d
 
 std::uint32_t DeviceDamping::solve(const SolidParameters& p, const PlacedSolids& solids, Real dt,
                                    const opencl::Buffer& force) {
-  const DampingParameters damping{dt,
-                                  total_mass_,
-                                  kDampingTolerance * kDampingTolerance,
-                                  kDampingVelocityTolerance * kDampingVelocityTolerance,
-                                  number_of(free_),
-                                  kMaxDampingPasses};
+  const DampingParameters damping = damping_parameters(dt, total_mass_, free_);
   begin(damping, solids, force);
-  DampingProgress progress{};
-  int batch = std::max(1, expected_);
-  do {
-    // Iterations after the end of a solve have no effect.
-    for (int n = 0; n < batch; ++n) iterate(p, damping, solids);
-    program_.read(progress_, std::span(&progress, 1));
-    batch = kFurtherIterations;
-  } while (progress.is_open != 0);
+  expected_ = run_iterations(program_, progress_, expected_, [&] { iterate(p, damping, solids); });
   if (free_ > 0) program_.run("end_damping", free_, damping, change_of_force_, force);
   if (bodies_ > 0) {
     program_.run("end_damping_of_bodies", bodies_, number_of(bodies_), number_of(count_),
                  solids.rigid.rigid, change_of_force_, solids.rigid.force);
   }
-  expected_ = progress.iterations;
-  return static_cast<std::uint32_t>(progress.iterations);
+  return static_cast<std::uint32_t>(expected_);
 }
 
 }  // namespace vat

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <span>
 
 #include "core/device/common/device_cells.h"
 #include "core/device/opencl/program.h"
@@ -19,6 +21,36 @@ struct DampingParameters {
   std::int32_t count;
   std::int32_t most_iterations;
 };
+
+/// Returns the parameters of a solve for forces that act for `dt` [s] on `count` free particles.
+DampingParameters damping_parameters(Real dt, Real total_mass, std::size_t count);
+
+/// The struct DampingProgress of damping.cl.
+struct DampingProgress {
+  double error;
+  double size;
+  double permitted;
+  double length;
+  double share;
+  std::int32_t iterations;
+  std::int32_t is_open;
+};
+
+/// Calls iterate() until the device has ended a solve. `expected` is the number of iterations of
+/// the last solve. Iterations after the end must have no effect. Returns the number of iterations.
+template <class F>
+int run_iterations(opencl::Program& program, const opencl::Buffer& progress_on_device, int expected,
+                   F&& iterate) {
+  constexpr int kFurther = 2;  // in a batch, if a solve needs more than expected
+  DampingProgress progress{};
+  int batch = std::max(1, expected);
+  do {
+    for (int n = 0; n < batch; ++n) iterate();
+    program.read(progress_on_device, std::span(&progress, 1));
+    batch = kFurther;
+  } while (progress.is_open != 0);
+  return progress.iterations;
+}
 
 /// The present particles of bodies on a device, for sums over their neighbours.
 struct PlacedSolids {

@@ -15,6 +15,7 @@
 #include "core/device/liquid/device_step_control.h"
 #include "core/device/liquid/device_surface.h"
 #include "core/device/solid/device_solids.h"
+#include "core/device/tait/device_viscosity.h"
 
 namespace vat {
 namespace {
@@ -54,6 +55,12 @@ bool is_adaptive(const Model& model) {
   return model.scene.numerics.control == StepControl::adaptive;
 }
 
+/// Returns whether steps can be too long for explicit viscosity.
+bool may_solve_viscosity(const Model& model) {
+  return !solids_move(model) &&
+         (is_adaptive(model) || must_solve_viscosity(model, model.scene.numerics.step));
+}
+
 std::unique_ptr<DeviceSolids> make_solids(Program& program, const Model& model) {
   if (!solids_move(model)) return nullptr;
   return std::make_unique<DeviceSolids>(program, model, guard_bounds(model));
@@ -78,6 +85,7 @@ class TaitMethod : public VerletMethod {
     if (is_adaptive(model())) adaptive_.emplace(program, model());
     if (model().has_surface_tension) surface_.emplace(program, model());
     if (model().cohesion) cohesion_.emplace(program, model());
+    if (may_solve_viscosity(model())) viscosity_.emplace(program, model());
   }
 
   void read(State& state) override;
@@ -88,10 +96,8 @@ class TaitMethod : public VerletMethod {
   void save() override;
   void restore() override;
   void evaluate(const StepMoment& start, Real end) override;
-  bool must_solve(Real dt) const override { return solids_ && solids_->must_solve(dt); }
-  std::uint32_t solve_damping(Real end, Real dt) override {
-    return solids_->solve_damping(end, dt);
-  }
+  bool must_solve(Real dt) const override;
+  std::uint32_t solve_damping(Real end, Real dt) override;
   void finish(const StepMoment& moment) override;
   void wrap_liquid() override { now_.motion.wrap_liquid(model()); }
   bool take_nominal_steps(const NominalSteps& steps, AdvanceReport& report) override;
@@ -118,6 +124,7 @@ class TaitMethod : public VerletMethod {
   std::optional<AdaptiveSteps> adaptive_;
   std::optional<DeviceSurface> surface_;
   std::optional<DeviceCohesion> cohesion_;
+  std::optional<DeviceViscosity> viscosity_;  ///< only if a step may not resolve the viscosity
   ReadMotion read_;
   std::vector<Float4> accelerations_;
 };
@@ -179,6 +186,16 @@ void TaitMethod::restore() {
   copy(start_, now_);
   if (solids_) solids_->restore();
   if (adaptive_) adaptive_->history = adaptive_->saved_history;
+}
+
+bool TaitMethod::must_solve(Real dt) const {
+  return solids_ ? solids_->must_solve(dt) : viscosity_ && must_solve_viscosity(model(), dt);
+}
+
+std::uint32_t TaitMethod::solve_damping(Real end, Real dt) {
+  if (solids_) return solids_->solve_damping(end, dt);
+  return viscosity_->solve(geometry_.at(model(), {end, 0, 0, 0, 0}), particles_,
+                           now_.motion.velocity, dt, now_.acceleration);
 }
 
 void TaitMethod::evaluate_liquid(const LiquidParameters& p) {
@@ -294,6 +311,7 @@ std::size_t bytes_for_tait(const Model& model) {
          (is_adaptive(model) ? AdaptiveSteps::bytes_for(model) : 0) +
          (model.has_surface_tension ? DeviceSurface::bytes_for(model) : 0) +
          (model.cohesion ? DeviceCohesion::bytes_for(model) : 0) +
+         (may_solve_viscosity(model) ? DeviceViscosity::bytes_for(model) : 0) +
          (moves ? DeviceSolids::bytes_for(model) : 0);
 }
 

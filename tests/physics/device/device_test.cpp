@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "core/damping/damping_solve.h"
 #include "protocol/scene/scene_json.h"
 #include "tests/physics/device/on_device.h"
 #include "tests/support/scenes.h"
@@ -25,6 +26,18 @@ Scene make_column() {
   scene.vat = Vat{{0, 0, 0}, {0.3, 0.12, 0.4}, false, {}};
   scene.bodies = {BodyDescription{"column", BodyKind::liquid, "water",
                                   BoxShape{{0.08, 0.06, 0.12}, {0.16, 0.12, 0.24}}, kSpacing}};
+  return scene;
+}
+
+/// A column of honey that flows on fixed bodies between no-slip walls. Its steps do not resolve its
+/// viscosity.
+Scene make_honey() {
+  Scene scene = make_column();
+  scene.materials[0].liquid->viscosity = 20;
+  scene.materials[0].liquid->artificial_viscosity = 0;
+  set_no_slip(scene);
+  add_fixed_bodies(scene);
+  scene.bodies[0].velocity = {1, 0, 0};
   return scene;
 }
 
@@ -62,6 +75,40 @@ TEST(Device, HasTheAccuracyOfTheCpu) {
   expect_accuracy_of_cpu(make_column(), kScenes, kSteps);
 }
 
+// The solves of the device and of the CPU meet the same tolerance.
+TEST(Device, SolvesForStrongViscosity) {
+  constexpr std::uint32_t kSteps = 30;
+  const SceneCase cases[] = {
+      {"fixed steps", [](Scene&) {}},
+      {"settling in a sliding vat",
+       [](Scene& scene) {
+         scene.settling = Settling{200, 1};
+         scene.vat->motion = SlideMotion{{1, 0, 0}, 0.1, 0.2};
+       }},
+      {"slip walls",
+       [](Scene& scene) {
+         for (Wall& wall : scene.vat->walls) wall = {};
+       }},
+      {"without a vat", [](Scene& scene) { scene.vat.reset(); }},
+      {"adaptive steps", [](Scene& scene) { scene.numerics.control = StepControl::adaptive; }},
+  };
+  for (const SceneCase& one : cases) {
+    SCOPED_TRACE(one.name);
+    Scene scene = make_honey();
+    one.edit(scene);
+    Simulation device = make_on_device(scene);
+    Simulation cpu = make_simulation(scene);
+    const AdvanceReport report = device.advance(kSteps);
+    const AdvanceReport expected = cpu.advance(kSteps);
+    EXPECT_EQ(report.device_steps, kSteps);
+    EXPECT_EQ(report.steps, expected.steps);
+    EXPECT_GT(report.iterations.damping, kSteps);
+    EXPECT_GT(expected.iterations.damping, kSteps);
+    const Real moved = difference(device, make_simulation(scene));
+    EXPECT_LT(difference(device, cpu), kDampingTolerance * moved);
+  }
+}
+
 TEST(Device, ReflectsParticlesAtWalls) {
   Scene scene = make_column();
   // The particles are beyond a wall after one step.
@@ -92,6 +139,7 @@ TEST(Device, ReflectsParticlesAtWalls) {
 
 TEST(Device, HasTheSameBitsInAnyPortionsOfSteps) {
   expect_same_bits_in_any_portions(make_column(), 4);
+  expect_same_bits_in_any_portions(make_honey(), 4);
 }
 
 TEST(Device, ContinuesAStateOfTheCpuAndTheReverse) {
@@ -199,7 +247,6 @@ TEST(Device, RefusesFeaturesThatItLacks) {
       {"/numerics/integrator",
        [](Scene& s) { s.numerics.integrator = IntegratorId::symplectic_euler; }},
       {"/numerics/control", [](Scene& s) { s.numerics.control = StepControl::local; }},
-      {"/numerics/step", [](Scene& s) { s.materials[0].liquid->viscosity = 200; }},
       {"/emitters",
        [](Scene& s) {
          s.emitters.push_back({.name = "tap",
