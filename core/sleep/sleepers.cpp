@@ -4,6 +4,7 @@
 
 #include "core/laws/vat_motion.h"
 #include "core/model/compile.h"
+#include "core/sleep/islands.h"
 #include "core/stepping/step_plan.h"
 #include "core/support/check.h"
 

@@ -103,6 +103,7 @@ LiquidGeometry::LiquidGeometry(const Model& model, const GuardBounds& bounds) {
   for (const int wall : model.no_slip_walls) constant_.no_slip |= 1 << wall;
   constant_.is_thick = is_thick(liquid, model.scene.dimensions) ? 1 : 0;
   constant_.bounces = model.is_incompressible ? 0 : 1;
+  constant_.is_filled = model.is_filled ? 1 : 0;
   constant_.count = static_cast<std::int32_t>(model.liquid_count);
   constant_.solids = static_cast<std::int32_t>(model.particle_count - model.liquid_count);
 }

@@ -52,6 +52,7 @@ struct LiquidParameters {
   std::int32_t no_slip;    ///< bit w: liquid does not slip along wall w
   std::int32_t is_thick;   ///< 1: slip walls are viscous, see is_thick()
   std::int32_t bounces;    ///< 1: walls reverse velocities; 0: walls remove them
+  std::int32_t is_filled;  ///< see Model::is_filled
   std::int32_t count;      ///< liquid particles
   std::int32_t solids;     ///< solid particles
 };

@@ -179,13 +179,14 @@ float square_of(float3 x) {
 // The pressure of the image of a particle at `place` includes the hydrostatic pressure difference;
 // see ImagePressure.
 float image_pressure(const Parameters* p, const Mirror* m, int4 place, float pressure) {
-  if (pressure <= 0) return pressure;
+  if (!p->is_filled && pressure <= 0) return pressure;
   const int n[3] = {place.x, place.y, place.z};
   float more = 0;
   for (int k = 0; k < 3; ++k) {
     if (p->periods[k] > 0) continue;
     more += p->fall[k] * ((float)(reflected(p, m, n[k], k) - n[k]) * p->unit);
   }
+  if (p->is_filled) return pressure + p->density * more;
   return max(0.0f, pressure + pressure / (pressure + p->layer) * (p->density * more));
 }
 
@@ -326,7 +327,8 @@ kernel void find_solid_pressure(const Parameters p, global const int* begins,
   })
   const float fall = p.gravity[0] * arms.x + p.gravity[1] * arms.y + p.gravity[2] * arms.z;
   const float sum = pressures + p.density * (fall * (p.unit / p.in_supports));
-  sorted_motion[slot].w = weights > 0 ? max(0.0f, sum / weights) : 0;
+  const float mean = weights > 0 ? sum / weights : 0;
+  sorted_motion[slot].w = p.is_filled ? mean : max(0.0f, mean);
 }
 
 // The accelerations in the order of particles.

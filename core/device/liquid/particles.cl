@@ -47,6 +47,7 @@ typedef struct {
   int no_slip;
   int is_thick;
   int bounces;
+  int is_filled;
   int count;
   int solids;
 } Parameters;

@@ -86,5 +86,7 @@ kernel void find_pressure(const Parameters p, global const int* begins,
   if (sum > 1) sum -= own_excess(&p, n, as_float(own.w));
   density[slot] = sum;
   const float square = sum * sum;
-  sorted_motion[slot].w = max(0 - p.tension * square, p.stiffness * tait_pressure(sum)) / square;
+  const float pressure = p.stiffness * tait_pressure(sum);
+  sorted_motion[slot].w =
+      (p.is_filled ? pressure : max(0 - p.tension * square, pressure)) / square;
 }

@@ -15,6 +15,7 @@
 #include "core/device/liquid/device_step_control.h"
 #include "core/device/liquid/device_surface.h"
 #include "core/device/solid/device_solids.h"
+#include "core/device/tait/device_transport.h"
 #include "core/device/tait/device_viscosity.h"
 
 namespace vat {
@@ -85,6 +86,7 @@ class TaitMethod : public VerletMethod {
     if (is_adaptive(model())) adaptive_.emplace(program, model());
     if (model().has_surface_tension) surface_.emplace(program, model());
     if (model().cohesion) cohesion_.emplace(program, model());
+    if (model().is_filled) transport_.emplace(program, model());
     if (may_solve_viscosity(model())) viscosity_.emplace(program, model());
   }
 
@@ -124,6 +126,7 @@ class TaitMethod : public VerletMethod {
   std::optional<AdaptiveSteps> adaptive_;
   std::optional<DeviceSurface> surface_;
   std::optional<DeviceCohesion> cohesion_;
+  std::optional<DeviceTransport> transport_;  ///< only if the liquid fills its world
   std::optional<DeviceViscosity> viscosity_;  ///< only if a step may not resolve the viscosity
   ReadMotion read_;
   std::vector<Float4> accelerations_;
@@ -134,6 +137,7 @@ void TaitMethod::write(const State& state) {
   now_.motion.write(state.now);
   particles_.write_solids(state.now);
   if (solids_) solids_->write(state);
+  if (transport_) transport_->write(state.forces);
   if (adaptive_) adaptive_->history = state.history;
   accelerations_.assign(n, {});
   if (state.forces_current) {
@@ -152,6 +156,7 @@ void TaitMethod::read(State& state) {
   read_.read(program_, now_.motion, n);
   program_.read(now_.acceleration, std::span<Float4>(accelerations_));
   if (solids_) solids_->read();
+  if (transport_) transport_->read();
   read_.copy_to(state.now);
   // No force acts on solids that are held.
   state.forces.particle.assign(model().particle_count, Vec3::Zero());
@@ -163,6 +168,7 @@ void TaitMethod::read(State& state) {
         model().mass[i] *
         Vec3(static_cast<Real>(a.x), static_cast<Real>(a.y), static_cast<Real>(a.z));
   }
+  if (transport_) transport_->copy_to(state.forces);
   state.forces_current = true;
   if (adaptive_) state.history = adaptive_->history;
   state.bound = model().damping.any ? find_bound_of_bodies(model()) : Oscillation{};
@@ -179,12 +185,14 @@ void TaitMethod::copy(const TaitState& from, TaitState& to) {
 void TaitMethod::save() {
   copy(now_, start_);
   if (solids_) solids_->save();
+  if (transport_) transport_->save();
   if (adaptive_) adaptive_->saved_history = adaptive_->history;
 }
 
 void TaitMethod::restore() {
   copy(start_, now_);
   if (solids_) solids_->restore();
+  if (transport_) transport_->restore();
   if (adaptive_) adaptive_->history = adaptive_->saved_history;
 }
 
@@ -208,6 +216,7 @@ void TaitMethod::evaluate_liquid(const LiquidParameters& p) {
                s.sorted_motion, s.neighbour_counts, s.neighbours, now_.acceleration);
   if (surface_) surface_->add_forces(p, s, now_.acceleration);
   if (cohesion_) cohesion_->add_forces(p, s, now_.acceleration);
+  if (transport_) transport_->add_forces(p, s, now_.acceleration);
 }
 
 void TaitMethod::evaluate(const StepMoment& start, Real end) {
@@ -217,6 +226,7 @@ void TaitMethod::evaluate(const StepMoment& start, Real end) {
   at_end.prediction = model().damping.any ? start.opening : 0;
   const LiquidParameters p = geometry_.at(model(), at_end);
   if (solids_) solids_->move(start, end, model().scene.numerics.step, particles_.counters.buffer);
+  if (transport_ && start.drift > 0) transport_->drift(start.drift, now_.motion.position);
   evaluate_liquid(p);
   if (solids_) find_forces_on_solids(p, end);
 }
@@ -311,6 +321,7 @@ std::size_t bytes_for_tait(const Model& model) {
          (is_adaptive(model) ? AdaptiveSteps::bytes_for(model) : 0) +
          (model.has_surface_tension ? DeviceSurface::bytes_for(model) : 0) +
          (model.cohesion ? DeviceCohesion::bytes_for(model) : 0) +
+         (model.is_filled ? DeviceTransport::bytes_for(model) : 0) +
          (may_solve_viscosity(model) ? DeviceViscosity::bytes_for(model) : 0) +
          (moves ? DeviceSolids::bytes_for(model) : 0);
 }

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "core/numerics/step_limits.h"
+#include "core/stepping/control/step_control_contacts.h"
 #include "core/support/check.h"
 
 namespace vat {

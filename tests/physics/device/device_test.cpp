@@ -41,7 +41,32 @@ Scene make_honey() {
   return scene;
 }
 
+/// Fills the vat with liquid that flows along its lid.
+void fill_vat(Scene& scene) {
+  scene.vat->lid = true;
+  scene.vat->max = {0.16, 0.12, 0.24};
+  for (Wall& wall : scene.vat->walls) wall.no_slip = true;
+  scene.vat->walls[5].velocity = {2, 0, 0};
+  scene.bodies[0].jitter = 0.1;
+  scene.materials[0].liquid->viscosity = 0.3;
+  scene.numerics.step = scene.numerics.tick = 5e-4;
+}
+
 const SceneCase kScenes[] = {
+    {"vat full of liquid", fill_vat},
+    {"vat full of liquid around a ball",
+     [](Scene& scene) {
+       fill_vat(scene);
+       scene.materials.push_back(make_material("stone", 2000));
+       scene.bodies.push_back(make_fixed("ball", SphereShape{{0.08, 0.06, 0.12}, 0.03}, kSpacing));
+     }},
+    {"periodic world full of liquid",
+     [](Scene& scene) {
+       scene.vat.reset();
+       scene.periodic = Periodicity{{0, 0, 0}, {0.16, 0.12, 0.24}, {true, true, true}};
+       scene.bodies[0].jitter = 0.2;
+       scene.gravity = {1, 0, 0};
+     }},
     {"no-slip walls that move",
      [](Scene& scene) {
        scene.vat->motion = SlideMotion{Vec3(0, 1, 0), 0.02, 3};
@@ -140,6 +165,9 @@ TEST(Device, ReflectsParticlesAtWalls) {
 TEST(Device, HasTheSameBitsInAnyPortionsOfSteps) {
   expect_same_bits_in_any_portions(make_column(), 4);
   expect_same_bits_in_any_portions(make_honey(), 4);
+  Scene full = make_column();
+  fill_vat(full);
+  expect_same_bits_in_any_portions(full, 4);
 }
 
 TEST(Device, ContinuesAStateOfTheCpuAndTheReverse) {
@@ -247,6 +275,11 @@ TEST(Device, RefusesFeaturesThatItLacks) {
       {"/numerics/integrator",
        [](Scene& s) { s.numerics.integrator = IntegratorId::symplectic_euler; }},
       {"/numerics/control", [](Scene& s) { s.numerics.control = StepControl::local; }},
+      {"/numerics/control",
+       [](Scene& s) {
+         fill_vat(s);
+         s.numerics.control = StepControl::adaptive;
+       }},
       {"/emitters",
        [](Scene& s) {
          s.emitters.push_back({.name = "tap",
