@@ -249,9 +249,14 @@ void ClusterNode::tick() {
 void ClusterNode::refresh() {
   try {
     locator_.refresh();
-    separate_leaders();
   } catch (const NatsError&) {
     needs_refresh_ = true;
+    return;
+  }
+  try {
+    separate_leaders();
+  } catch (const NatsError& error) {  // the next refresh tries it again
+    log_warning("the leaders of the streams are not separated: {}", error.what());
   }
 }
 

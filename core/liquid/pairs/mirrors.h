@@ -21,9 +21,9 @@ struct Mirror {
   Vec3 place(const Vec3& x) const { return twice_plane + turn(x); }
 };
 
-/// Calls f(walls) for each set of one to three walls whose images of `p` may be within `radius` [m]
-/// of `p`. The walls of a set are perpendicular to different axes. `walls` is a span of wall
-/// numbers.
+/// Calls f(walls) for each set of one to three walls, if the images of `p` in these walls may be
+/// within `radius` [m] of `p`. No two walls of a set have parallel normals. The function f receives
+/// a span of wall numbers.
 template <class F>
 void for_each_wall_set(const Model& model, const VatMotion& motion, const Vec3& p, Real radius,
                        F&& f) {

@@ -40,7 +40,7 @@ export class Stage {
   private stale = true;
   private readonly frames = new AnimationFrames();
   private readonly resolution: Resolution;
-  /** The share of the display's rows and columns in the present picture; 0: there is none. */
+  /** The present picture has this share of the display's rows and columns; 0: there is no picture. */
   private scale = 0;
   private counted = { passes: 0, calls: 0 };
   private readonly warmUp: WarmUp;
