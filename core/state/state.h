@@ -26,7 +26,7 @@ struct ContactImpulse {
   std::uint64_t other = 0;     ///< a wall, or kWallCount + index of the other particle
   Vec3 drift = Vec3::Zero();   ///< of the solve at the start of the step [N]
   Vec3 finish = Vec3::Zero();  ///< of the solve at the end of the step [N]
-  bool is_steady = false;      ///< the force is not much larger than in the preceding step
+  bool is_steady = false;      ///< the next step may start with these forces
 };
 
 /// State of a plastic or tearable spring, stored at each end of the spring.

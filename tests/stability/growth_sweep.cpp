@@ -15,24 +15,46 @@ Scene make_falling(Real step) {
   return scene;
 }
 
+Scene make_masonry() {
+  Scene scene = make_falling(5e-3);
+  scene.vat = Vat{{-2, -2, 0}, {2, 2, 12}, false, {}, {}};
+  scene.materials = {test::make_material("brick", 1800)};
+  scene.default_interface.law = InterfaceLaw::projection;
+  scene.default_interface.friction = 0.6;
+  return scene;
+}
+
+void add_block(Scene& scene, const Vec3& center, const Vec3& size, Real spacing) {
+  BodyDescription block;
+  block.name = "block " + std::to_string(scene.bodies.size());
+  block.kind = BodyKind::rigid;
+  block.material = "brick";
+  block.spacing = spacing;
+  block.shape = BoxShape{Vec3::Zero(), size};
+  block.position = center;
+  scene.bodies.push_back(block);
+}
+
 /// A stack of `height` blocks of eight particles at rest on the floor.
 Scene make_stack(int height) {
   constexpr Real kSize = 0.2;
-  constexpr Real kSpacing = 0.1;
-  Scene scene = make_falling(5e-3);
-  scene.vat = Vat{{-2, -2, 0}, {2, 2, 12}, false, {}, {}};
-  scene.materials = {test::make_material("wood", 600)};
-  scene.default_interface.law = InterfaceLaw::projection;
-  scene.default_interface.friction = 0.6;
+  Scene scene = make_masonry();
   for (int n = 0; n < height; ++n) {
-    BodyDescription block;
-    block.name = "block " + std::to_string(n);
-    block.kind = BodyKind::rigid;
-    block.material = "wood";
-    block.spacing = kSpacing;
-    block.shape = BoxShape{Vec3::Zero(), {kSize, kSize, kSize}};
-    block.position = {0, 0, kSize * (n + 0.5)};
-    scene.bodies.push_back(block);
+    add_block(scene, {0, 0, kSize * (n + 0.5)}, {kSize, kSize, kSize}, kSize / 2);
+  }
+  return scene;
+}
+
+/// A wall of `height` rows of four bricks at rest on the floor. Each row is displaced by a quarter
+/// of a brick relative to the row below it.
+Scene make_wall(int height) {
+  const Vec3 size(0.2, 0.1, 0.1);
+  Scene scene = make_masonry();
+  for (int row = 0; row < height; ++row) {
+    for (int n = 0; n < 4; ++n) {
+      const Real along = (n + 0.25 * (row % 2)) * size.x();
+      add_block(scene, {along, 0, (row + 0.5) * size.z()}, size, 0.05);
+    }
   }
   return scene;
 }
@@ -84,6 +106,11 @@ const std::vector<GrowthFamily>& growth_families() {
                                                       "blocks in a stack",
                                                       {2, 5, 10, 20, 40},
                                                       &make_stack,
+                                                      &IterationCounts::contacts},
+                                                     {"projected contacts",
+                                                      "rows of bricks in a wall",
+                                                      {1, 2, 4, 8, 16},
+                                                      &make_wall,
                                                       &IterationCounts::contacts},
                                                      {"damping",
                                                       "viscosity [Pa s]",

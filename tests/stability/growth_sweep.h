@@ -19,8 +19,8 @@ struct GrowthFamily {
   std::uint64_t IterationCounts::*iterations;
 };
 
-/// Stacks of blocks with projected contacts, a viscous pool, ropes of implicit springs, and ropes
-/// with limited elongation.
+/// Stacks of blocks and walls of bricks with projected contacts, a viscous pool, ropes of implicit
+/// springs, and ropes with limited elongation.
 const std::vector<GrowthFamily>& growth_families();
 
 struct GrowthPoint {

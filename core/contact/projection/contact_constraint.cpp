@@ -1,6 +1,7 @@
 #include "core/contact/projection/contact_constraint.h"
 #include "core/contact/scratch.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/limits.h"
@@ -77,21 +78,41 @@ void recall(const std::vector<ContactImpulse>& last, std::vector<ContactConstrai
   for (ContactConstraint& contact : constraints) {
     const auto key = std::pair(contact.ends[0].particle, contact.other());
     while (next != last.end() && std::pair(next->particle, next->other) < key) ++next;
-    if (next != last.end() && std::pair(next->particle, next->other) == key) contact.last = *next;
+    if (next == last.end() || std::pair(next->particle, next->other) != key) continue;
+    contact.last = *next;
+    contact.is_new = false;
   }
 }
 
-void record(const std::vector<ContactConstraint>& constraints, Real dt,
-            std::vector<ContactImpulse>& contacts) {
+void record(const Model& model, const std::vector<ContactConstraint>& constraints, Real dt,
+            Real slow, std::vector<std::uint8_t>& is_hit, std::vector<ContactImpulse>& contacts) {
   VAT_CHECK(dt > 0);
   constexpr Real kSteady = 2;
+  is_hit.assign(model.free_count + model.rigid_bodies.size(), 0);
+  const auto any_end = [&](const ContactConstraint& contact, auto&& f) {
+    return std::ranges::any_of(contact.ends, [&](const ContactEnd& end) {
+      if (end.inverse_mass == 0) return false;
+      const std::size_t n =
+          end.rigid == kNoParticle ? end.particle : std::size_t{model.free_count} + end.rigid;
+      return f(is_hit[n]);
+    });
+  };
+  for (const ContactConstraint& contact : constraints) {
+    if (-contact.approach <= slow) continue;
+    any_end(contact, [](std::uint8_t& is_end_hit) {
+      is_end_hit = 1;
+      return false;
+    });
+  }
   contacts.clear();
   for (const ContactConstraint& contact : constraints) {
     const Vec3 drift = contact.drift / dt;
     const Vec3 finish = (contact.impulse() - contact.drift) / dt;
     const ContactImpulse& last = contact.last;
-    const bool is_steady = drift.norm() <= kSteady * last.drift.norm() &&
-                           finish.norm() <= kSteady * last.finish.norm();
+    const bool is_steady =
+        !any_end(contact, [](std::uint8_t is_end_hit) { return is_end_hit != 0; }) ||
+        (drift.norm() <= kSteady * last.drift.norm() &&
+         finish.norm() <= kSteady * last.finish.norm());
     contacts.push_back({contact.ends[0].particle, contact.other(), drift, finish, is_steady});
   }
 }

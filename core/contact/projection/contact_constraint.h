@@ -29,13 +29,15 @@ struct ContactConstraint {
   Real friction = 0;
   Real restitution = 0;
 
+  Real distance = 0;           ///< at the start of the step [m]
   Vec3 normal = Vec3::Zero();  ///< direction of impulses on the first end
   Real mobility = 0;           ///< separation speed per unit impulse along the normal [1/kg]
   Real approach = 0;           ///< separation speed before the impulses of the step [m/s]
   Real parting = 0;            ///< required separation speed at the end of the step [m/s]
   Real push = 0;               ///< impulse along the normal [N s]
   Vec3 friction_impulse = Vec3::Zero();  ///< impulse perpendicular to the normal [N s]
-  ContactImpulse last{};                 ///< forces of the last step
+  ContactImpulse last{};                 ///< forces of the last step; zero if the contact is new
+  bool is_new = true;                    ///< the last step had no such contact
   Vec3 drift = Vec3::Zero();             ///< impulse at the start of the step [N s]
 
   Vec3 impulse() const { return push * normal + friction_impulse; }  ///< on the first end [N s]
@@ -74,9 +76,11 @@ class ConstraintSearch {
 /// particle and other.
 void recall(const std::vector<ContactImpulse>& last, std::vector<ContactConstraint>& constraints);
 /// Stores the forces of the present step, which are the impulses divided by the step length `dt`
-/// [s].
-void record(const std::vector<ContactConstraint>& constraints, Real dt,
-            std::vector<ContactImpulse>& contacts);
+/// [s]. The contacts of a body or particle are steady if none of its contacts had an impact, which
+/// is an approach faster than `slow` [m/s]. Otherwise a contact is steady if its forces are at most
+/// twice those of the last step. `is_hit` is scratch.
+void record(const Model& model, const std::vector<ContactConstraint>& constraints, Real dt,
+            Real slow, std::vector<std::uint8_t>& is_hit, std::vector<ContactImpulse>& contacts);
 
 /// The gap up to which ConstraintSearch includes contacts, in thresholds. Impulses may close such a
 /// gap.

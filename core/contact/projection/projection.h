@@ -47,6 +47,7 @@ class ContactProjection {
   ConstraintSearch search_;
   std::vector<ContactConstraint> constraints_;
   ContactIslands islands_;
+  std::vector<std::uint8_t> is_hit_;  ///< by free particle, then by rigid body
   ContactNewtonScratch newton_;
   std::vector<RigidMotion> rigid_;      ///< present motion, changed by the impulses
   std::vector<RigidMotion> predicted_;  ///< motion of the predicted poses
