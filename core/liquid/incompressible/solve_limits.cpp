@@ -19,8 +19,11 @@ constexpr Real kMaxGreatestDivergence = 0.05;  // residual of one particle
 constexpr Real kMaxMeanDivergence = 0.003;     // mean residual
 constexpr Real kStartMeanDivergence = 0.001;   // mean residual above which pressures are updated
 constexpr Real kStartGreatestDivergence = 0.0075;  // the same for the residual of one particle
-constexpr Real kDivergenceOfDensity = 0.25;        // mean divergence / density tolerance
-constexpr Real kMaxRemoval = 0.0015;               // relative excess density that one step removes
+// Share of the divergence tolerance at which a solve ends. The residual of the last iteration is an
+// estimate, and the residuals of steps add up to density errors.
+constexpr Real kDivergenceShare = 0.9;
+constexpr Real kDivergenceOfDensity = 0.25;  // mean divergence / density tolerance
+constexpr Real kMaxRemoval = 0.0015;         // relative excess density that one step removes
 constexpr Real kLeftAlone = 0.1;     // share of the density tolerance that the velocities leave
 constexpr Real kClosing = 0.25;      // share of a gap that is closed in one step
 constexpr Real kLinearShare = 0.25;  // share of the density tolerance for the solve of one round
@@ -41,7 +44,7 @@ DensityRoom density_room(const IncompressibleSolve& wanted) {
 SolveLimits velocity_limits(const IncompressibleSolve& wanted) {
   const Real bound = std::clamp(kDivergenceOfDensity * wanted.density_tolerance,
                                 kStartMeanDivergence, kMaxMeanDivergence);
-  const Real tolerance = std::min(wanted.divergence_tolerance, bound);
+  const Real tolerance = kDivergenceShare * std::min(wanted.divergence_tolerance, bound);
   return {.mean = tolerance,
           .greatest = std::min(kGreatestDivergence * tolerance, kMaxGreatestDivergence),
           .most_iterations = wanted.most_iterations,
