@@ -146,7 +146,6 @@ void Missing::check_materials() {
   for (std::size_t m = 0; m < scene_.materials.size(); ++m) {
     const Material& material = scene_.materials[m];
     const std::string path = "/materials/" + std::to_string(m);
-    reject(material.implicit_springs, path + "/implicit_springs", "must be false");
     reject(material.elongation_limit.has_value(), path + "/elongation_limit", "must be absent");
   }
 }

@@ -7,6 +7,11 @@
 
 namespace vat {
 
+/// Returns whether a model has bodies with implicit springs.
+inline bool has_implicit_springs(const Model& model) {
+  return model.implicit_begin < model.free_count;
+}
+
 /// Buffers of implicit springs, for the particles from Model::implicit_begin on.
 struct ImplicitSpringsScratch {
   SpringSystemScratch system;

@@ -21,19 +21,23 @@ void SpringSystemScratch::resize(const Model& model) {
   slopes.resize(model.spring_ends.size() - model.spring_begin[model.implicit_begin]);
 }
 
+int spring_factor_cost(const Model& model, const ModelBody& body) {
+  if (!body.spring_width) return 0;
+  const IndexRange& particles = body.particles;
+  const Real ends = model.spring_begin[particles.end] - model.spring_begin[particles.begin];
+  const Real height = *body.spring_width + 1;
+  const Real band = height * height * particles.size();
+  return static_cast<int>(kFactorCost * band / std::max(ends, Real{1}));
+}
+
 SpringSystem::SpringSystem(const Model& model, TaskRunner* runner, const ModelBody& body,
                            SpringSystemScratch& scratch)
     : model_(model),
       runner_(runner),
       particles_(body.particles),
       width_(body.spring_width),
-      scratch_(scratch) {
-  if (width_) {
-    const Real ends = model_.spring_begin[particles_.end] - model_.spring_begin[particles_.begin];
-    const Real height = *width_ + 1;
-    const Real band = height * height * particles_.size();
-    factor_cost_ = static_cast<int>(kFactorCost * band / std::max(ends, Real{1}));
-  }
+      scratch_(scratch),
+      factor_cost_(spring_factor_cost(model, body)) {
   for (Index i = particles_.begin; i < particles_.end; ++i) {
     if (model_.inverse_mass[i] == 0) {
       free_mass_ = 0;

@@ -34,6 +34,10 @@ struct SpringSystemScratch {
   void resize(const Model& model);
 };
 
+/// Returns the cost of the Cholesky factor of SpringSystem for a body, in iterations without a
+/// factor. The cost of a body that is too wide for a factor is 0.
+int spring_factor_cost(const Model& model, const ModelBody& body);
+
 /// Linear equations (M + slopes) change = residual for the velocities of one body with implicit
 /// springs. Slopes are equal at both ends, with opposite effects. Every solution therefore
 /// conserves linear momentum. Angular momentum is also conserved if the slopes have no transverse
@@ -97,8 +101,8 @@ class SpringSystem {
   IndexRange particles_;
   std::optional<Index> width_;
   SpringSystemScratch& scratch_;
-  int factor_cost_ = 0;  ///< in iterations without a factor
-  int iterations_ = 0;   ///< without a factor
+  const int factor_cost_;  ///< in iterations without a factor
+  int iterations_ = 0;     ///< without a factor
   bool is_factored_ = false;
   Real free_mass_ = 0;  ///< [kg]; 0 if a particle is fixed
   std::uint64_t passes_ = 0;

@@ -88,10 +88,6 @@ void evaluate_with_solve(const StepArguments& step, Real time) {
   restore_velocities(f, step.scratch.start, state.now);
 }
 
-bool has_implicit_springs(const Model& model) {
-  return model.implicit_begin < model.free_count;
-}
-
 /// Drifts particles and bodies. Contacts by projection change the velocities with which they drift.
 void drift_to_contact(const StepArguments& step) {
   const auto& [f, state, time, dt, scratch] = step;

@@ -58,6 +58,7 @@ bool VerletMethod::take_steps(const EngineInput& input, std::uint32_t steps) {
     restore();
     return false;
   }
+  count_work(report);
   report.wall_stops += static_cast<std::uint64_t>(counted.stops);
   input.report = std::move(report);
   return true;

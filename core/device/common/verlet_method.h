@@ -49,6 +49,8 @@ class VerletMethod : public DeviceMethod {
   virtual void finish(const StepMoment& moment) = 0;
   /// Ends a nominal step in a periodic world, see DeviceMotion::wrap_liquid().
   virtual void wrap_liquid() = 0;
+  /// Adds the work of kernels since save() to a report.
+  virtual void count_work(AdvanceReport& report) = 0;
   /// Takes `steps`. Returns false if a state is known to be invalid; the remaining steps are then
   /// not taken. This function takes fixed steps.
   virtual bool take_nominal_steps(const NominalSteps& steps, AdvanceReport& report);

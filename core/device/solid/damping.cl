@@ -103,7 +103,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multiply_damping(
       add_contacts(&p, begins, order, sorted_position, predicted, direction, spins, spin_changes,
                    mass, radius, body_of, bodies, laws, exclusion_begin, exclusions, &t);
     }
-    if (i < p.free) add_springs(&p, spring_begin, springs, position, direction, &t);
+    if (i < p.implicit) add_springs(&p, spring_begin, springs, position, direction, &t);
     if (p.walls_push) {
       const int of_wall = p.materials * p.materials + p.materials + bodies[t.body].material;
       add_walls(&p, laws[of_wall], &t);

@@ -6,6 +6,7 @@
 #include "core/damping/damping_solve.h"
 #include "core/device/common/kernel_values.h"
 #include "core/model/acting_forces.h"
+#include "core/solid/implicit_springs.h"
 #include "core/state/rigid_motion.h"
 #include "core/support/check.h"
 
@@ -58,6 +59,7 @@ DeviceSolids::DeviceSolids(Program& program, const Model& model, const GuardBoun
       damping_(program, model) {
   if (!keeps_forces(model)) integration_.emplace(program, model);
   if (model.springs_change) spring_changes_.emplace(program, model);
+  if (has_implicit_springs(model)) implicit_springs_.emplace(program, model);
 }
 
 std::size_t DeviceSolids::bytes_for(const Model& model) {
@@ -69,7 +71,8 @@ std::size_t DeviceSolids::bytes_for(const Model& model) {
          (groups_of_solids(model) + model.rigid_bodies.size() + 1) * sizeof(Bound) +
          DeviceRigidBodies::bytes_for(model) + DeviceDamping::bytes_for(model) +
          (keeps_forces(model) ? 0 : DeviceIntegration::bytes_for(model)) +
-         (model.springs_change ? DeviceSpringChanges::bytes_for(model) : 0);
+         (model.springs_change ? DeviceSpringChanges::bytes_for(model) : 0) +
+         (has_implicit_springs(model) ? DeviceImplicitSprings::bytes_for(model) : 0);
 }
 
 void DeviceSolids::write(const State& state) {
@@ -113,6 +116,7 @@ void DeviceSolids::save() {
   program_.copy(force_, saved_force_, range_.count * kVector);
   rigid_.save();
   if (spring_changes_) spring_changes_->save(tables_);
+  if (implicit_springs_) implicit_springs_->clear_counts();
   saved_bound_ = bound_;
 }
 
@@ -127,13 +131,14 @@ void DeviceSolids::restore() {
 void DeviceSolids::move(const StepMoment& start, Real end, Real step,
                         const opencl::Buffer& counters) {
   const SolidTables& t = tables_;
-  const SolidParameters before = geometry_.at(model_, start);
+  SolidParameters before = geometry_.at(model_, start);
   const SolidParameters after = parameters(end);
   rigid_.move(before, step, counters);
   start.drift > 0 ? rigid_.drive(model_, start.time, end)
                   : rigid_.begin_drive(model_, start.time, step);
   rigid_.pose(after, motion_.position, predicted_, counters);
   cells_.clear();
+  if (implicit_springs_) move_implicit_springs(before, counters);
   program_.run("move_solids", range_.count, before, motion_.position, motion_.velocity, predicted_,
                force_, t.mobility, t.body_of, t.bodies, cells_.cell_of, cells_.rank, cells_.counts,
                counters);
@@ -145,6 +150,29 @@ void DeviceSolids::move(const StepMoment& start, Real end, Real step,
   program_.run(
       "find_cell_pressure", model_.cells.size(), static_cast<std::int32_t>(model_.cells.size()),
       static_cast<std::int32_t>(model_.scene.dimensions), motion_.position, t.cells, pressure_);
+}
+
+void DeviceSolids::end_implicit_step(const SolidParameters& p, const opencl::Buffer& counters) {
+  if (p.closing == 0) return;
+  const SolidTables& t = tables_;
+  program_.run("kick_solids", range_.free, number_of(range_.free), p.closing, motion_.velocity,
+               force_, t.mobility);
+  implicit_springs_->damp(p.closing, t, motion_.position, motion_.velocity);
+  program_.run("check_solids", range_.free, p, motion_.position, motion_.velocity, t.mobility,
+               t.body_of, t.bodies, counters);
+}
+
+void DeviceSolids::move_implicit_springs(SolidParameters& p, const opencl::Buffer& counters) {
+  end_implicit_step(p, counters);
+  if (p.drift > 0) {
+    const SolidTables& t = tables_;
+    implicit_springs_->damp(p.opening, t, motion_.position, motion_.velocity);
+    program_.run("kick_solids", range_.free, number_of(range_.free), p.opening, motion_.velocity,
+                 force_, t.mobility);
+    implicit_springs_->drift(p.drift, t, motion_.position, motion_.velocity);
+  }
+  p.closing = 0;
+  p.opening = 0;
 }
 
 void DeviceSolids::find_forces(Real end) {
@@ -185,6 +213,10 @@ void DeviceSolids::finish(const StepMoment& moment, Real step, const opencl::Buf
   const SolidParameters p = geometry_.at(model_, moment);
   rigid_.finish(p, step, counters);
   if (range_.free == 0) return;
+  if (implicit_springs_) {
+    end_implicit_step(p, counters);
+    return;
+  }
   program_.run("finish_solids", range_.free, p, motion_.position, motion_.velocity, force_,
                tables_.mobility, tables_.body_of, tables_.bodies, counters);
 }

@@ -10,6 +10,7 @@
 #include "core/device/common/device_motion.h"
 #include "core/device/opencl/program.h"
 #include "core/device/solid/device_damping.h"
+#include "core/device/solid/device_implicit_springs.h"
 #include "core/device/solid/device_integration.h"
 #include "core/device/solid/device_rigid_bodies.h"
 #include "core/device/solid/device_spring_changes.h"
@@ -54,6 +55,10 @@ class DeviceSolids {
   /// Solves for the damping in a step of `dt` [s] that ends at the time `end` [s]. Returns the
   /// number of conjugate-gradient iterations.
   std::uint32_t solve_damping(Real end, Real dt);
+  /// Adds the work of the solves for implicit springs since save() to a report.
+  void count_work(AdvanceReport& report) {
+    if (implicit_springs_) implicit_springs_->count(report);
+  }
   /// Moves liquid particles into a periodic world, see DeviceMotion::wrap_liquid().
   void wrap_liquid() { motion_.wrap_liquid(model_); }
   /// Ends the last step of a call at its time.
@@ -103,6 +108,11 @@ class DeviceSolids {
 
  private:
   void find_bound();
+  /// The kicks of move() and the drift of implicit springs. The remaining parts of `p` are those of
+  /// the kernel move_solids.
+  void move_implicit_springs(SolidParameters& p, const opencl::Buffer& counters);
+  /// Ends a step with its closing kick.
+  void end_implicit_step(const SolidParameters& p, const opencl::Buffer& counters);
   void change_springs() {
     if (spring_changes_) spring_changes_->change(motion_.position, tables_);
   }
@@ -125,6 +135,7 @@ class DeviceSolids {
   DeviceDamping damping_;
   std::optional<DeviceIntegration> integration_;       ///< of integrators without a closing kick
   std::optional<DeviceSpringChanges> spring_changes_;  ///< only if springs change
+  std::optional<DeviceImplicitSprings> implicit_springs_;
   ReadMotion read_;
   std::vector<Vec3> read_forces_;
   Oscillation bound_, saved_bound_;  ///< of the last forces

@@ -390,8 +390,8 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_solid_forces
       add_contacts(&p, begins, order, sorted_position, predicted, predicted, spins, spins, mass,
                    radius, body_of, bodies, laws, exclusion_begin, exclusions, &t);
     }
+    if (i < p.implicit) add_springs(&p, spring_begin, springs, position, predicted, &t);
     if (i < p.free) {
-      add_springs(&p, spring_begin, springs, position, predicted, &t);
       add_cells(&p, cell_begin, corners, cells, pressure, position, &t);
     }
     if (p.walls_push) {

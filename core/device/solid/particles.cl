@@ -33,6 +33,8 @@ typedef struct {
   int dimensions;
   int first;
   int liquids;
+  int implicit;
+  int padding;
 } Solids;
 
 typedef struct {
@@ -161,7 +163,8 @@ void end_solid_step(const Solids* p, int i, global const double* position,
   if (p->closing > 0) check_solid(p, mobility, greatest_speed2, x, v, status);
 }
 
-// Ends a step, and begins the next one with a kick and a drift. Counts the particles of each cell.
+// Ends a step, and begins the next one with a kick and a drift. The drift of implicit springs has
+// preceded. Counts the particles of each cell.
 // The velocities that forces depend on are kicked by the prediction.
 kernel void move_solids(const Solids p, global double* position, global double* velocity,
                         global double* predicted, global const double* force,
@@ -179,7 +182,7 @@ kernel void move_solids(const Solids p, global double* position, global double* 
     const double prediction = i < p.liquids ? p.prediction_of_liquids : p.prediction;
     for (int k = 0; k < 3; ++k) {
       v[k] += (p.opening * mine) * force[3 * i + k];
-      x[k] += p.drift * v[k];
+      if (i < p.implicit) x[k] += p.drift * v[k];
       position[3 * i + k] = x[k];
       velocity[3 * i + k] = v[k];
       predicted[3 * i + k] = v[k] + (prediction * mine) * force[3 * i + k];
@@ -188,6 +191,33 @@ kernel void move_solids(const Solids p, global double* position, global double* 
     for (int k = 0; k < 3; ++k) x[k] = position[3 * i + k];
   }
   enter_solid(&p, i, x, cell_of, rank, cell_counts);
+}
+
+// Kicks by the forces over `dt`.
+kernel void kick_solids(const int count, const double dt, global double* velocity,
+                        global const double* force, global const double* mobility) {
+  const int i = get_global_id(0);
+  if (i >= count) return;
+  for (int k = 0; k < 3; ++k) velocity[3 * i + k] += (dt * mobility[i]) * force[3 * i + k];
+}
+
+// Stops particles at walls at the end of a step, and checks their state.
+kernel void check_solids(const Solids p, global double* position, global double* velocity,
+                         global const double* mobility, global const int* body_of,
+                         global const Body* bodies, global int* status) {
+  const int i = get_global_id(0);
+  if (i >= p.free) return;
+  double x[3];
+  double v[3];
+  for (int k = 0; k < 3; ++k) {
+    x[k] = position[3 * i + k];
+    v[k] = velocity[3 * i + k];
+  }
+  check_solid(&p, mobility[i], bodies[body_of[i]].greatest_speed2, x, v, status);
+  for (int k = 0; k < 3; ++k) {
+    position[3 * i + k] = x[k];
+    velocity[3 * i + k] = v[k];
+  }
 }
 
 // Ends the last step of a call.

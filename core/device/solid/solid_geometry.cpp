@@ -76,6 +76,7 @@ SolidGeometry::SolidGeometry(const Model& model, const GuardBounds& bounds) {
   constant_.count = static_cast<std::int32_t>(range.count);
   constant_.first = static_cast<std::int32_t>(range.first);
   constant_.liquids = static_cast<std::int32_t>(range.liquids);
+  constant_.implicit = static_cast<std::int32_t>(model.implicit_begin - range.first);
   constant_.materials = static_cast<std::int32_t>(scene.materials.size());
   constant_.dimensions = scene.dimensions;
 }

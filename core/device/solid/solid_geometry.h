@@ -39,8 +39,10 @@ struct SolidParameters {
   std::int32_t count;       ///< all particles
   std::int32_t materials;
   std::int32_t dimensions;
-  std::int32_t first;    ///< index of the first of these particles in the model
-  std::int32_t liquids;  ///< particles of gas-like liquids
+  std::int32_t first;     ///< index of the first of these particles in the model
+  std::int32_t liquids;   ///< particles of gas-like liquids
+  std::int32_t implicit;  ///< first particle with implicit springs; `free` without
+  std::int32_t padding;
 };
 
 /// The particles of a model with contacts, which are its last particles: those of solids and of

@@ -36,6 +36,7 @@ class SolidMethod : public VerletMethod {
   std::uint32_t solve_damping(Real end, Real dt) override { return solids_.solve_damping(end, dt); }
   void finish(const StepMoment& moment) override;
   void wrap_liquid() override { solids_.wrap_liquid(); }
+  void count_work(AdvanceReport& report) override { solids_.count_work(report); }
   bool take_nominal_steps(const NominalSteps& steps, AdvanceReport& report) override;
   bool keeps_forces() const;
 

@@ -102,6 +102,9 @@ class TaitMethod : public VerletMethod {
   std::uint32_t solve_damping(Real end, Real dt) override;
   void finish(const StepMoment& moment) override;
   void wrap_liquid() override { now_.motion.wrap_liquid(model()); }
+  void count_work(AdvanceReport& report) override {
+    if (solids_) solids_->count_work(report);
+  }
   bool take_nominal_steps(const NominalSteps& steps, AdvanceReport& report) override;
   void copy(const TaitState& from, TaitState& to);
   /// Moves the liquid, and computes its accelerations.

@@ -132,6 +132,11 @@ const SceneCase kDeformableScenes[] = {
        add_jelly(scene);
        scene.materials[2].bulk_modulus = 2000;
      }},
+    {"jelly with implicit springs",
+     [](Scene& scene) {
+       add_jelly(scene);
+       scene.materials[2].implicit_springs = true;
+     }},
     {"plastic jelly",
      [](Scene& scene) {
        add_jelly(scene);
@@ -353,7 +358,6 @@ TEST(CoupledDevice, RefusesFeaturesThatItLacks) {
          add_piston(s);
          s.bodies[2].angular_velocity = {0, 0, 1};
        }},
-      {"/materials/1/implicit_springs", [](Scene& s) { s.materials[1].implicit_springs = true; }},
       {"/default_interface", [](Scene& s) { s.default_interface.law = InterfaceLaw::projection; }},
   };
   expect_refusals(make_pool(), cases);

@@ -3,7 +3,7 @@
 #include "tests/physics/device/on_device.h"
 #include "tests/support/scenes.h"
 
-// Springs that flow or tear on an OpenCL device.
+// Springs that flow, tear or are implicit, on an OpenCL device.
 
 namespace vat::device_springs_test {
 namespace {
@@ -122,6 +122,124 @@ TEST(SpringsDevice, LeavesStopsAtWallsToTheCpu) {
   EXPECT_EQ(device.advance(kSteps).device_steps, 0U);
   EXPECT_GT(cpu.advance(kSteps).wall_stops, 0U);
   EXPECT_EQ(device.state_hash(), cpu.state_hash());
+}
+
+/// Stiff implicit springs in steps that are ten times too long for explicit springs.
+Scene make_implicit() {
+  Scene scene = make_clay();
+  scene.numerics.step = 4e-3;
+  scene.numerics.tick = 4e-3;
+  scene.materials[0].plasticity.reset();
+  scene.materials[0].implicit_springs = true;
+  scene.materials[0].springs =
+      LatticeSprings{SpringConstants{6e4, 5}, SpringConstants{3e4, 2}, SpringConstants{1.5e4, 1}};
+  return scene;
+}
+
+/// Replaces the block by a lattice of particles, some of which are fixed.
+void fix_particles(Scene& scene, std::vector<Index> fixed) {
+  const std::vector<Vec3> positions = make_lattice(4, 3, 3, kSpacing);
+  ParticleShape shape = make_particles(positions, 0.02);
+  shape.fixed = std::move(fixed);
+  scene.bodies[0] =
+      make_body("block", BodyKind::deformable, "clay", std::move(shape), kSpacing / 2);
+  scene.bodies[0].springs = join_near(positions, 1.8 * kSpacing, {3e4, 2});
+  scene.gravity = {0, 0, -9.81};
+}
+
+const SceneCase kImplicitScenes[] = {
+    {"free", [](Scene&) {}},
+    {"without dashpots",
+     [](Scene& scene) {
+       scene.materials[0].springs =
+           LatticeSprings{SpringConstants{6e4, 0}, SpringConstants{3e4, 0}, {}};
+     }},
+    {"in two dimensions",
+     [](Scene& scene) {
+       scene.dimensions = 2;
+       scene.materials[0].density = 20;
+       scene.bodies[0].velocity_field->gradient << 40, 0, -10, 0, 0, 0, 10, 0, 0;
+     }},
+    {"a pendulum", [](Scene& scene) { fix_particles(scene, {0}); }},
+    {"a beam",
+     [](Scene& scene) {
+       fix_particles(scene, {0, 4, 8, 12, 16, 20, 24, 28, 32});
+     }},
+    {"flowing and tearing",
+     [](Scene& scene) {
+       scene.materials[0].plasticity = Plasticity{.yield_strain = 1e-3};
+       tear(scene);
+     }},
+    {"beside explicit springs, on a floor with friction",
+     [](Scene& scene) {
+       scene.materials.push_back(make_clay().materials[0]);
+       scene.materials[1].name = "jelly";
+       scene.materials[1].plasticity.reset();
+       scene.numerics.step = 1e-3;
+       scene.numerics.tick = 1e-3;
+       scene.bodies.push_back(scene.bodies[0]);
+       scene.bodies[1].name = "jelly";
+       scene.bodies[1].material = "jelly";
+       scene.bodies[1].position = {0.02, 0.03, 0.17};
+       scene.bodies[1].velocity_field.reset();
+       scene.bodies[1].velocity.z() = -2;
+       scene.default_interface = {5000, 5, 0.4};
+       scene.gravity = {0, 0, -9.81};
+       scene.vat = Vat{{-1, -1, -0.08}, {1, 1, 1}, false, {}};
+     }},
+    {"in a gas",
+     [](Scene& scene) {
+       scene.materials.push_back(make_liquid("air", 1000, {50, 1, 2 * kSpacing}));
+       scene.bodies.push_back(BodyDescription{"air", BodyKind::liquid, "air",
+                                              BoxShape{{0, 0, 0.16}, {0.2, 0.12, 0.12}}, kSpacing});
+       scene.default_interface = {1000, 2};
+       scene.numerics.step = 1e-3;
+       scene.numerics.tick = 1e-3;
+     }},
+    {"too wide for a factor",
+     [](Scene& scene) {
+       scene.bodies[0].shape = BoxShape{Vec3::Zero(), {0.24, 0.28, 0.28}};
+       scene.bodies[0].velocity_field->gradient /= 2;
+     }},
+    {"turned inside out, in parts of a drift",
+     [](Scene& scene) { scene.bodies[0].velocity_field->gradient *= -30; }},
+};
+
+TEST(ImplicitSpringsDevice, HaveTheMotionOfTheCpu) {
+  const Simulation usual = make_advanced(make_implicit(), 25);
+  for (const SceneCase& one : kImplicitScenes) {
+    SCOPED_TRACE(one.name);
+    Scene scene = make_implicit();
+    one.edit(scene);
+    expect_motion_of_cpu(scene, 25);
+    Simulation device = make_on_device(scene);
+    Simulation cpu = make_simulation(scene);
+    const AdvanceReport report = device.advance(25);
+    const AdvanceReport expected = cpu.advance(25);
+    EXPECT_GT(expected.iterations.springs, 100U);
+    if (&one != kImplicitScenes &&
+        cpu.bodies()[0].positions.size() == usual.bodies()[0].positions.size()) {
+      EXPECT_GT(difference(usual, cpu), 1e-4) << "the change has an effect";
+    }
+    EXPECT_EQ(report.iterations.springs, expected.iterations.springs);
+    EXPECT_EQ(report.particle_evaluations, expected.particle_evaluations);
+    EXPECT_EQ(report.unsolved_drifts, expected.unsolved_drifts);
+  }
+}
+
+// Each operation is rounded as IEEE 754 defines it, so that the hash is a constant.
+TEST(ImplicitSpringsDevice, HaveTheSameBitsOnEveryDeviceIfExact) {
+  Simulation simulation = make_on_device(make_implicit());
+  EXPECT_EQ(simulation.advance(25).device_steps, 25U);
+  EXPECT_EQ(simulation.state_hash(), 0xc43130cdf2b819f6U);
+}
+
+TEST(ImplicitSpringsDevice, HaveTheSameBitsInAnyPortionsOfSteps) {
+  expect_same_bits_in_any_portions(make_implicit(), 2);
+}
+
+TEST(ImplicitSpringsDevice, ContinueAStateOfTheCpuAndTheReverse) {
+  expect_continuation(make_implicit(), 20, rounding_after(20));
 }
 
 }  // namespace
