@@ -45,6 +45,7 @@ class Missing {
   void check_body(std::size_t index);
   void check_materials();
   void check_laws();
+  void check_motions();
   bool is_incompressible() const {
     return model_.liquid_count > 0 && scene_.pressure_solver == PressureSolver::incompressible;
   }
@@ -100,12 +101,13 @@ void Missing::check_liquid() {
   reject(scene_.kernel != KernelId::wendland_c2, "/kernel", "must be wendland_c2");
   reject(scene_.pair_precision != PairPrecision::single_precision, "/pair_precision",
          "must be single");
-  // An incompressible liquid requires symplectic Euler.
-  reject(!is_incompressible() && scene_.numerics.integrator != IntegratorId::velocity_verlet,
-         "/numerics/integrator", "must be velocity_verlet");
   reject(is_incompressible() && !scene_.forces.pressure, "/forces/pressure",
          "must be true for an incompressible liquid");
   const StepControl control = scene_.numerics.control;
+  const bool is_verlet = scene_.numerics.integrator == IntegratorId::velocity_verlet;
+  // An incompressible liquid requires symplectic Euler.
+  reject(!is_incompressible() && !is_verlet && control == StepControl::adaptive,
+         "/numerics/control", "must be fixed with an integrator other than velocity_verlet");
   reject(control == StepControl::local, "/numerics/control", "must be fixed or adaptive");
   reject(control == StepControl::adaptive && solids_move(model_), "/numerics/control",
          "must be fixed in a scene with bodies that can move");
@@ -120,6 +122,7 @@ void Missing::check_liquid() {
   reject(model_.is_filled && control == StepControl::adaptive, "/numerics/control",
          "must be fixed for a liquid that fills its world");
   if (!solids_move(model_)) return;
+  check_motions();
   check_materials();
   check_laws();
 }
@@ -130,10 +133,14 @@ void Missing::check_laws() {
   reject(model_.has_restitution, path, "must have a damping in place of a restitution");
 }
 
-void Missing::check_solids() {
+void Missing::check_motions() {
   reject(scene_.numerics.integrator != IntegratorId::velocity_verlet &&
              std::ranges::any_of(scene_.bodies, has_motion),
          "/numerics/integrator", "must be velocity_verlet for driven bodies");
+}
+
+void Missing::check_solids() {
+  check_motions();
   reject(scene_.numerics.integrator == IntegratorId::symplectic_euler && solves_damping(scene_) &&
              must_solve_own_damping(model_, scene_.numerics.step),
          "/numerics/step", "must resolve the damping of the bodies");

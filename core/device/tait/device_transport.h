@@ -35,6 +35,9 @@ class DeviceTransport {
   void save();
   void restore();
 
+  /// Returns the velocities, in the order of particles.
+  const opencl::Buffer& velocities() const { return transport_; }
+
   /// Moves the liquid for `dt` [s].
   void drift(Real dt, const opencl::Buffer& position);
   /// Computes the velocities of the sorted `particles`. Adds their momentum transport to

@@ -15,8 +15,11 @@
 #include "core/device/liquid/device_step_control.h"
 #include "core/device/liquid/device_surface.h"
 #include "core/device/solid/device_solids.h"
+#include "core/device/tait/device_liquid_integration.h"
 #include "core/device/tait/device_transport.h"
 #include "core/device/tait/device_viscosity.h"
+#include "core/stepping/integrator.h"
+#include "core/stepping/runge_kutta.h"
 
 namespace vat {
 namespace {
@@ -62,6 +65,10 @@ bool may_solve_viscosity(const Model& model) {
          (is_adaptive(model) || must_solve_viscosity(model, model.scene.numerics.step));
 }
 
+bool keeps_forces(const Model& model) {
+  return integrator_of(model.scene.numerics.integrator).keeps_forces();
+}
+
 std::unique_ptr<DeviceSolids> make_solids(Program& program, const Model& model) {
   if (!solids_move(model)) return nullptr;
   return std::make_unique<DeviceSolids>(program, model, guard_bounds(model));
@@ -83,6 +90,7 @@ class TaitMethod : public VerletMethod {
         particles_(program, model(), geometry, moving_particles(solids_.get())),
         now_(program, model().liquid_count),
         start_(program, model().liquid_count) {
+    if (!keeps_forces(model())) integration_.emplace(program, model());
     if (is_adaptive(model())) adaptive_.emplace(program, model());
     if (model().has_surface_tension) surface_.emplace(program, model());
     if (model().cohesion) cohesion_.emplace(program, model());
@@ -106,6 +114,8 @@ class TaitMethod : public VerletMethod {
     if (solids_) solids_->count_work(report);
   }
   bool take_nominal_steps(const NominalSteps& steps, AdvanceReport& report) override;
+  /// Takes a step of an integrator without a closing kick, from `start` to `end` [s].
+  void integrate(Real start, Real end, Real dt, AdvanceReport& report);
   void copy(const TaitState& from, TaitState& to);
   /// Moves the liquid, and computes its accelerations.
   void evaluate_liquid(const LiquidParameters& p);
@@ -127,6 +137,7 @@ class TaitMethod : public VerletMethod {
   TaitState now_;
   TaitState start_;  ///< state before a call, for a failed step
   std::optional<AdaptiveSteps> adaptive_;
+  std::optional<DeviceLiquidIntegration> integration_;  ///< of integrators without a closing kick
   std::optional<DeviceSurface> surface_;
   std::optional<DeviceCohesion> cohesion_;
   std::optional<DeviceTransport> transport_;  ///< only if the liquid fills its world
@@ -172,7 +183,7 @@ void TaitMethod::read(State& state) {
         Vec3(static_cast<Real>(a.x), static_cast<Real>(a.y), static_cast<Real>(a.z));
   }
   if (transport_) transport_->copy_to(state.forces);
-  state.forces_current = true;
+  state.forces_current = keeps_forces(model());
   if (adaptive_) state.history = adaptive_->history;
   state.bound = model().damping.any ? find_bound_of_bodies(model()) : Oscillation{};
   if (!solids_) return;
@@ -292,7 +303,48 @@ bool TaitMethod::take_part(const StepPart& part, AdvanceReport& report) {
   return true;
 }
 
+void TaitMethod::integrate(Real start, Real end, Real dt, AdvanceReport& report) {
+  const SteppedLiquid liquid{now_.motion, now_.acceleration,
+                             transport_ ? &transport_->velocities() : nullptr};
+  const LiquidParameters at_end = geometry_.at(model(), {end, 0, 0, 0, 0});
+  const Buffer& counters = particles_.counters.buffer;
+  const std::span<const RungeKuttaStage> stages =
+      runge_kutta_stages(model().scene.numerics.integrator);
+  std::size_t stage = 0;
+  // The liquid reaches a stage before the forces on the liquid and the solids are evaluated.
+  const auto evaluate = [&](Real time) {
+    if (stage > 0) {
+      integration_->advance(stages[stage - 1].weight, stages[stage].reach * dt, liquid);
+    }
+    evaluate_at_start(time, report);
+    ++stage;
+  };
+  if (!stages.empty()) integration_->begin(liquid);
+  if (solids_) {
+    solids_->integrate(start, end, dt, counters, evaluate);
+  } else if (stages.empty()) {
+    evaluate(start);
+  } else {
+    for (const RungeKuttaStage& one : stages) evaluate(start + one.reach * dt);
+  }
+  if (stages.empty()) {
+    integration_->take_euler_step(at_end, dt, liquid, counters);
+  } else {
+    integration_->advance(stages.back().weight, 0, liquid);
+    integration_->end(at_end, dt, liquid, counters);
+  }
+}
+
 bool TaitMethod::take_nominal_steps(const NominalSteps& steps, AdvanceReport& report) {
+  if (integration_) {
+    for (std::uint32_t s = 0; s < steps.count; ++s) {
+      integrate(steps.time(s), steps.time(s + 1), steps.step, report);
+      wrap_liquid();
+    }
+    report.count_steps(steps.count, steps.step, steps.step);
+    // Springs change before walls stop their particles.
+    return !solids_ || !solids_->springs_change() || particles_.counters.read().stops == 0;
+  }
   if (!adaptive_) return VerletMethod::take_nominal_steps(steps, report);
   StepHistory& history = adaptive_->history;
   bool has_forces = steps.has_forces;
@@ -321,6 +373,7 @@ std::size_t bytes_for_tait(const Model& model) {
   const bool moves = solids_move(model);
   return DeviceParticles::bytes_for(model, geometry, moves) +
          2 * model.liquid_count * TaitState::kBytes +
+         (keeps_forces(model) ? 0 : DeviceLiquidIntegration::bytes_for(model)) +
          (is_adaptive(model) ? AdaptiveSteps::bytes_for(model) : 0) +
          (model.has_surface_tension ? DeviceSurface::bytes_for(model) : 0) +
          (model.cohesion ? DeviceCohesion::bytes_for(model) : 0) +

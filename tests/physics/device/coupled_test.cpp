@@ -344,6 +344,11 @@ TEST(CoupledDevice, RestoresTheStateBeforeAFailedStep) {
   expect_restored_state(scene, 1, 2);
 }
 
+TEST(CoupledDevice, HasTheAccuracyOfTheCpuWithOtherIntegrators) {
+  const SceneCase cases[] = {{"ball", [](Scene&) {}}, {"jelly and ball", add_jelly}};
+  expect_accuracy_with_other_integrators(make_pool(), cases, 40);
+}
+
 TEST(CoupledDevice, RefusesFeaturesThatItLacks) {
   const SceneCase cases[] = {
       {"/bodies/1/velocity", [](Scene& s) { s.bodies[1].release = 1; }},

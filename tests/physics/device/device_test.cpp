@@ -100,6 +100,11 @@ TEST(Device, HasTheAccuracyOfTheCpu) {
   expect_accuracy_of_cpu(make_column(), kScenes, kSteps);
 }
 
+TEST(Device, HasTheAccuracyOfTheCpuWithOtherIntegrators) {
+  constexpr std::uint32_t kSteps = 15;  // explicit Euler is unstable
+  expect_accuracy_with_other_integrators(make_column(), kScenes, kSteps);
+}
+
 // The solves of the device and of the CPU meet the same tolerance.
 TEST(Device, SolvesForStrongViscosity) {
   constexpr std::uint32_t kSteps = 30;
@@ -272,8 +277,11 @@ TEST(Device, RefusesFeaturesThatItLacks) {
       {"/sleeping", [](Scene& s) { s.sleeping = Sleeping{}; }},
       {"/kernel", [](Scene& s) { s.kernel = KernelId::cubic_spline; }},
       {"/pair_precision", [](Scene& s) { s.pair_precision = PairPrecision::double_precision; }},
-      {"/numerics/integrator",
-       [](Scene& s) { s.numerics.integrator = IntegratorId::symplectic_euler; }},
+      {"/numerics/control",
+       [](Scene& s) {
+         s.numerics.integrator = IntegratorId::symplectic_euler;
+         s.numerics.control = StepControl::adaptive;
+       }},
       {"/numerics/control", [](Scene& s) { s.numerics.control = StepControl::local; }},
       {"/numerics/control",
        [](Scene& s) {

@@ -166,13 +166,23 @@ inline void expect_accuracy_of_cpu(const Scene& common, std::span<const SceneCas
     const AdvanceReport report = device.advance(steps);
     const AdvanceReport expected = single.advance(steps);
     exact.advance(steps);
-    EXPECT_EQ(report.device_steps, steps);
+    EXPECT_EQ(report.device_steps, steps) << expected.undone_steps << " steps of the CPU fail";
     EXPECT_EQ(report.steps, expected.steps);
     EXPECT_EQ(report.force_evaluations, expected.force_evaluations);
     EXPECT_EQ(report.wall_stops, expected.wall_stops);
     EXPECT_EQ(report.iterations.damping, expected.iterations.damping);
     EXPECT_LT(difference(device, exact), ratio * difference(single, exact));
     EXPECT_GT(difference(device, make_simulation(scene)), 1e-4) << "it moves";
+  }
+}
+
+/// Expects this accuracy with each integrator without a closing kick.
+inline void expect_accuracy_with_other_integrators(Scene common, std::span<const SceneCase> cases,
+                                                   std::uint32_t steps) {
+  for (const IntegratorId integrator : kOtherIntegrators) {
+    SCOPED_TRACE(static_cast<int>(integrator));
+    common.numerics.integrator = integrator;
+    expect_accuracy_of_cpu(common, cases, steps);
   }
 }
 

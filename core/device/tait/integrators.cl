@@ -1,0 +1,86 @@
+// The integrators of a weakly compressible liquid without a closing kick, see solid/integrators.cl. `p`
+// are the parameters at the end of a step of `dt`. The transport velocity moves the particles if
+// `has_transport` is set.
+
+double transport_of(const int has_transport, global const float4* transport, int i, int k) {
+  if (!has_transport) return 0;
+  const float4 w = transport[i];
+  const float by[3] = {w.x, w.y, w.z};
+  return by[k];
+}
+
+double acceleration_along(global const float4* acceleration, int i, int k) {
+  const float4 a = acceleration[i];
+  const float of[3] = {a.x, a.y, a.z};
+  return of[k];
+}
+
+// Checks a particle at the end of a step, and reflects it at walls.
+void end_liquid_step(const Parameters* p, int i, double* x, double* v, global double* position,
+                     global double* velocity, global int* status) {
+  bool sound = is_sound(p, x, v);
+  if (reflect_at_walls(p, x, v)) {
+    atomic_inc(status + kStops);
+    sound = sound && is_sound(p, x, v);
+  }
+  if (!sound) atomic_or(status + kFault, 1);
+  for (int k = 0; k < 3; ++k) {
+    position[3 * i + k] = x[k];
+    velocity[3 * i + k] = v[k];
+  }
+}
+
+// Takes a step of symplectic Euler.
+kernel void take_liquid_euler_step(const Parameters p, const double dt, const int has_transport,
+                                   global double* position, global double* velocity,
+                                   global const float4* acceleration,
+                                   global const float4* transport, global int* status) {
+  const int i = get_global_id(0);
+  if (i >= p.count) return;
+  double x[3];
+  double v[3];
+  for (int k = 0; k < 3; ++k) {
+    v[k] = velocity[3 * i + k] + dt * acceleration_along(acceleration, i, k);
+    x[k] = position[3 * i + k] + dt * (v[k] + transport_of(has_transport, transport, i, k));
+  }
+  end_liquid_step(&p, i, x, v, position, velocity, status);
+}
+
+// Adds `weight` times the present rates to the sums, and moves to the next stage; see advance_stage.
+kernel void advance_liquid_stage(const int count, const double weight, const double way,
+                                 const int has_transport, global double* position,
+                                 global double* velocity, global const double* start_position,
+                                 global const double* start_velocity,
+                                 global double* sum_of_velocity,
+                                 global double* sum_of_acceleration,
+                                 global const float4* acceleration,
+                                 global const float4* transport) {
+  const int i = get_global_id(0);
+  if (i >= count) return;
+  for (int k = 0; k < 3; ++k) {
+    const int n = 3 * i + k;
+    const double v = velocity[n] + transport_of(has_transport, transport, i, k);
+    const double a = acceleration_along(acceleration, i, k);
+    sum_of_velocity[n] += weight * v;
+    sum_of_acceleration[n] += weight * a;
+    position[n] = start_position[n] + way * v;
+    velocity[n] = start_velocity[n] + way * a;
+  }
+}
+
+// Ends a step by the sums of its rates.
+kernel void end_liquid_stages(const Parameters p, const double dt, global double* position,
+                              global double* velocity, global const double* start_position,
+                              global const double* start_velocity,
+                              global const double* sum_of_velocity,
+                              global const double* sum_of_acceleration, global int* status) {
+  const int i = get_global_id(0);
+  if (i >= p.count) return;
+  double x[3];
+  double v[3];
+  for (int k = 0; k < 3; ++k) {
+    x[k] = start_position[3 * i + k] + dt * sum_of_velocity[3 * i + k];
+    v[k] = start_velocity[3 * i + k] + dt * sum_of_acceleration[3 * i + k];
+  }
+  end_liquid_step(&p, i, x, v, position, velocity, status);
+}
