@@ -43,7 +43,6 @@ class Missing {
     if (is_used) errors_.push_back({"not_on_device", path, message + " on a device"});
   }
   void check_body(std::size_t index);
-  void check_materials();
   void check_laws();
   void check_motions();
   bool is_incompressible() const {
@@ -123,7 +122,6 @@ void Missing::check_liquid() {
          "must be fixed for a liquid that fills its world");
   if (!solids_move(model_)) return;
   check_motions();
-  check_materials();
   check_laws();
 }
 
@@ -145,16 +143,7 @@ void Missing::check_solids() {
              must_solve_own_damping(model_, scene_.numerics.step),
          "/numerics/step", "must resolve the damping of the bodies");
   reject(scene_.numerics.control != StepControl::fixed, "/numerics/control", "must be fixed");
-  check_materials();
   check_laws();
-}
-
-void Missing::check_materials() {
-  for (std::size_t m = 0; m < scene_.materials.size(); ++m) {
-    const Material& material = scene_.materials[m];
-    const std::string path = "/materials/" + std::to_string(m);
-    reject(material.elongation_limit.has_value(), path + "/elongation_limit", "must be absent");
-  }
 }
 
 }  // namespace

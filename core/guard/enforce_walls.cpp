@@ -5,6 +5,7 @@
 #include <atomic>
 #include <limits>
 
+#include "core/laws/vat_motion.h"
 #include "core/state/rigid_motion.h"
 #include "core/support/check.h"
 

@@ -28,14 +28,14 @@ std::size_t DeviceIntegration::bytes_for(const Model& model) {
   return 2 * (SolidRange(model).count * DeviceMotion::kBytes + bytes_of_poses(model));
 }
 
-void DeviceIntegration::take_euler_step(const SolidParameters& p, Real dt,
+void DeviceIntegration::take_euler_step(const SolidParameters& p, Real kick, Real dt,
                                         const SteppedSolids& solids,
                                         const opencl::Buffer& counters) {
   const SolidTables& t = solids.tables;
   const DeviceRigidBodies& r = solids.rigid;
   if (free_ > 0) {
-    program_.run("take_euler_step", free_, p, dt, solids.motion.position, solids.motion.velocity,
-                 solids.force, t.mobility, t.body_of, t.bodies, counters);
+    program_.run("take_euler_step", free_, p, kick, dt, solids.motion.position,
+                 solids.motion.velocity, solids.force, t.mobility, t.body_of, t.bodies, counters);
   }
   if (bodies_ > 0) {
     program_.run("take_euler_step_of_bodies", bodies_, p, number_of(bodies_), dt, r.rigid, r.force,

@@ -28,8 +28,9 @@ class DeviceIntegration {
   /// Returns the bytes of the buffers.
   static std::size_t bytes_for(const Model& model);
 
-  /// Takes a step of symplectic Euler of `dt` [s]. `p` are the parameters at its end.
-  void take_euler_step(const SolidParameters& p, Real dt, const SteppedSolids& solids,
+  /// Takes a step of symplectic Euler of `dt` [s], in which the kick of particles lasts `kick` [s].
+  /// `p` are the parameters at its end.
+  void take_euler_step(const SolidParameters& p, Real kick, Real dt, const SteppedSolids& solids,
                        const opencl::Buffer& counters);
   /// Begins a Runge-Kutta step.
   void begin(const SteppedSolids& solids);

@@ -60,6 +60,7 @@ DeviceSolids::DeviceSolids(Program& program, const Model& model, const GuardBoun
   if (!keeps_forces(model)) integration_.emplace(program, model);
   if (model.springs_change) spring_changes_.emplace(program, model);
   if (has_implicit_springs(model)) implicit_springs_.emplace(program, model);
+  if (!model.limited_springs.empty()) elongation_.emplace(program, model);
 }
 
 std::size_t DeviceSolids::bytes_for(const Model& model) {
@@ -72,7 +73,8 @@ std::size_t DeviceSolids::bytes_for(const Model& model) {
          DeviceRigidBodies::bytes_for(model) + DeviceDamping::bytes_for(model) +
          (keeps_forces(model) ? 0 : DeviceIntegration::bytes_for(model)) +
          (model.springs_change ? DeviceSpringChanges::bytes_for(model) : 0) +
-         (has_implicit_springs(model) ? DeviceImplicitSprings::bytes_for(model) : 0);
+         (has_implicit_springs(model) ? DeviceImplicitSprings::bytes_for(model) : 0) +
+         (model.limited_springs.empty() ? 0 : DeviceElongation::bytes_for(model));
 }
 
 void DeviceSolids::write(const State& state) {
@@ -117,6 +119,7 @@ void DeviceSolids::save() {
   rigid_.save();
   if (spring_changes_) spring_changes_->save(tables_);
   if (implicit_springs_) implicit_springs_->clear_counts();
+  if (elongation_) elongation_->clear_counts();
   saved_bound_ = bound_;
 }
 
@@ -138,7 +141,7 @@ void DeviceSolids::move(const StepMoment& start, Real end, Real step,
                   : rigid_.begin_drive(model_, start.time, step);
   rigid_.pose(after, motion_.position, predicted_, counters);
   cells_.clear();
-  if (implicit_springs_) move_implicit_springs(before, counters);
+  if (has_divided_kicks() && range_.free > 0) divide_kicks(before, counters);
   program_.run("move_solids", range_.count, before, motion_.position, motion_.velocity, predicted_,
                force_, t.mobility, t.body_of, t.bodies, cells_.cell_of, cells_.rank, cells_.counts,
                counters);
@@ -152,24 +155,40 @@ void DeviceSolids::move(const StepMoment& start, Real end, Real step,
       static_cast<std::int32_t>(model_.scene.dimensions), motion_.position, t.cells, pressure_);
 }
 
-void DeviceSolids::end_implicit_step(const SolidParameters& p, const opencl::Buffer& counters) {
+void DeviceSolids::kick(Real dt) {
+  program_.run("kick_solids", range_.free, number_of(range_.free), dt, motion_.velocity, force_,
+               tables_.mobility);
+}
+
+void DeviceSolids::limit_springs(Real dt) {
+  if (!elongation_) return;
+  elongation_->limit(dt, spring_changes_ ? &spring_changes_->are_torn() : nullptr, motion_.position,
+                     motion_.velocity, tables_.mobility);
+}
+
+void DeviceSolids::end_divided_step(const SolidParameters& p, const opencl::Buffer& counters) {
   if (p.closing == 0) return;
   const SolidTables& t = tables_;
-  program_.run("kick_solids", range_.free, number_of(range_.free), p.closing, motion_.velocity,
-               force_, t.mobility);
-  implicit_springs_->damp(p.closing, t, motion_.position, motion_.velocity);
+  kick(p.closing);
+  if (implicit_springs_) {
+    implicit_springs_->damp(p.closing, t, motion_.position, motion_.velocity);
+  }
   program_.run("check_solids", range_.free, p, motion_.position, motion_.velocity, t.mobility,
                t.body_of, t.bodies, counters);
 }
 
-void DeviceSolids::move_implicit_springs(SolidParameters& p, const opencl::Buffer& counters) {
-  end_implicit_step(p, counters);
+void DeviceSolids::divide_kicks(SolidParameters& p, const opencl::Buffer& counters) {
+  end_divided_step(p, counters);
   if (p.drift > 0) {
     const SolidTables& t = tables_;
-    implicit_springs_->damp(p.opening, t, motion_.position, motion_.velocity);
-    program_.run("kick_solids", range_.free, number_of(range_.free), p.opening, motion_.velocity,
-                 force_, t.mobility);
-    implicit_springs_->drift(p.drift, t, motion_.position, motion_.velocity);
+    if (implicit_springs_) {
+      implicit_springs_->damp(p.opening, t, motion_.position, motion_.velocity);
+    }
+    kick(p.opening);
+    limit_springs(p.drift);
+    if (implicit_springs_) {
+      implicit_springs_->drift(p.drift, t, motion_.position, motion_.velocity);
+    }
   }
   p.closing = 0;
   p.opening = 0;
@@ -213,8 +232,8 @@ void DeviceSolids::finish(const StepMoment& moment, Real step, const opencl::Buf
   const SolidParameters p = geometry_.at(model_, moment);
   rigid_.finish(p, step, counters);
   if (range_.free == 0) return;
-  if (implicit_springs_) {
-    end_implicit_step(p, counters);
+  if (has_divided_kicks()) {
+    end_divided_step(p, counters);
     return;
   }
   program_.run("finish_solids", range_.free, p, motion_.position, motion_.velocity, force_,

@@ -10,6 +10,7 @@
 #include "core/device/common/device_motion.h"
 #include "core/device/opencl/program.h"
 #include "core/device/solid/device_damping.h"
+#include "core/device/solid/device_elongation.h"
 #include "core/device/solid/device_implicit_springs.h"
 #include "core/device/solid/device_integration.h"
 #include "core/device/solid/device_rigid_bodies.h"
@@ -55,9 +56,10 @@ class DeviceSolids {
   /// Solves for the damping in a step of `dt` [s] that ends at the time `end` [s]. Returns the
   /// number of conjugate-gradient iterations.
   std::uint32_t solve_damping(Real end, Real dt);
-  /// Adds the work of the solves for implicit springs since save() to a report.
+  /// Adds the work of the solves for springs since save() to a report.
   void count_work(AdvanceReport& report) {
     if (implicit_springs_) implicit_springs_->count(report);
+    if (elongation_) elongation_->count(report);
   }
   /// Moves liquid particles into a periodic world, see DeviceMotion::wrap_liquid().
   void wrap_liquid() { motion_.wrap_liquid(model_); }
@@ -75,7 +77,10 @@ class DeviceSolids {
         runge_kutta_stages(model_.scene.numerics.integrator);
     if (stages.empty()) {
       evaluate(start);
-      integration_->take_euler_step(at_end, dt, solids, counters);
+      const bool is_divided = has_divided_kicks();
+      if (is_divided) kick(dt);
+      limit_springs(dt);
+      integration_->take_euler_step(at_end, is_divided ? 0 : dt, dt, solids, counters);
     } else {
       integration_->begin(solids);
       for (std::size_t s = 0; s < stages.size(); ++s) {
@@ -108,11 +113,18 @@ class DeviceSolids {
 
  private:
   void find_bound();
-  /// The kicks of move() and the drift of implicit springs. The remaining parts of `p` are those of
-  /// the kernel move_solids.
-  void move_implicit_springs(SolidParameters& p, const opencl::Buffer& counters);
-  /// Ends a step with its closing kick.
-  void end_implicit_step(const SolidParameters& p, const opencl::Buffer& counters);
+  /// Returns whether there is work between the kicks of two steps, or between a kick and a drift.
+  bool has_divided_kicks() const {
+    return implicit_springs_.has_value() || elongation_.has_value();
+  }
+  /// The kicks of move(), and all work between them and the drift. The remaining parts of `p` are
+  /// those of the kernel move_solids.
+  void divide_kicks(SolidParameters& p, const opencl::Buffer& counters);
+  /// Ends a step with its closing kick, and checks the state.
+  void end_divided_step(const SolidParameters& p, const opencl::Buffer& counters);
+  void kick(Real dt);
+  /// Limits the elongation of springs in the next drift of `dt` [s].
+  void limit_springs(Real dt);
   void change_springs() {
     if (spring_changes_) spring_changes_->change(motion_.position, tables_);
   }
@@ -136,6 +148,7 @@ class DeviceSolids {
   std::optional<DeviceIntegration> integration_;       ///< of integrators without a closing kick
   std::optional<DeviceSpringChanges> spring_changes_;  ///< only if springs change
   std::optional<DeviceImplicitSprings> implicit_springs_;
+  std::optional<DeviceElongation> elongation_;  ///< only if springs are limited
   ReadMotion read_;
   std::vector<Vec3> read_forces_;
   Oscillation bound_, saved_bound_;  ///< of the last forces

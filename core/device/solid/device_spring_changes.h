@@ -30,6 +30,9 @@ class DeviceSpringChanges {
   void save(const SolidTables& tables);
   void restore(const SolidTables& tables);
 
+  /// Returns whether springs are torn, by spring end.
+  const opencl::Buffer& are_torn() const { return are_torn_; }
+
   /// Changes the springs after a step.
   void change(const opencl::Buffer& position, const SolidTables& tables);
 

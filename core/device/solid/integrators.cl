@@ -1,8 +1,8 @@
 // The integrators without a closing kick: symplectic Euler, and explicit Runge-Kutta methods, see
 // core/stepping/runge_kutta.h. `p` are the parameters at the end of a step of `dt`.
 
-// Takes a step of symplectic Euler.
-kernel void take_euler_step(const Solids p, const double dt, global double* position,
+// Takes a step of symplectic Euler, with a kick by `by`.
+kernel void take_euler_step(const Solids p, const double by, const double dt, global double* position,
                             global double* velocity, global const double* force,
                             global const double* mobility, global const int* body_of,
                             global const Body* bodies, global int* status) {
@@ -11,7 +11,7 @@ kernel void take_euler_step(const Solids p, const double dt, global double* posi
   double x[3];
   double v[3];
   for (int k = 0; k < 3; ++k) {
-    v[k] = velocity[3 * i + k] + (dt * mobility[i]) * force[3 * i + k];
+    v[k] = velocity[3 * i + k] + (by * mobility[i]) * force[3 * i + k];
     x[k] = position[3 * i + k] + dt * v[k];
   }
   check_solid(&p, mobility[i], bodies[body_of[i]].greatest_speed2, x, v, status);

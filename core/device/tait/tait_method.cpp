@@ -60,7 +60,7 @@ bool is_adaptive(const Model& model) {
 }
 
 /// Returns whether steps can be too long for explicit viscosity.
-bool may_solve_viscosity(const Model& model) {
+bool has_viscosity_solve(const Model& model) {
   return !solids_move(model) &&
          (is_adaptive(model) || must_solve_viscosity(model, model.scene.numerics.step));
 }
@@ -95,7 +95,7 @@ class TaitMethod : public VerletMethod {
     if (model().has_surface_tension) surface_.emplace(program, model());
     if (model().cohesion) cohesion_.emplace(program, model());
     if (model().is_filled) transport_.emplace(program, model());
-    if (may_solve_viscosity(model())) viscosity_.emplace(program, model());
+    if (has_viscosity_solve(model())) viscosity_.emplace(program, model());
   }
 
   void read(State& state) override;
@@ -378,7 +378,7 @@ std::size_t bytes_for_tait(const Model& model) {
          (model.has_surface_tension ? DeviceSurface::bytes_for(model) : 0) +
          (model.cohesion ? DeviceCohesion::bytes_for(model) : 0) +
          (model.is_filled ? DeviceTransport::bytes_for(model) : 0) +
-         (may_solve_viscosity(model) ? DeviceViscosity::bytes_for(model) : 0) +
+         (has_viscosity_solve(model) ? DeviceViscosity::bytes_for(model) : 0) +
          (moves ? DeviceSolids::bytes_for(model) : 0);
 }
 
