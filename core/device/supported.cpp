@@ -8,6 +8,7 @@
 #include "core/device/liquid/device_step_control.h"
 #include "core/device/solid/solid_geometry.h"
 #include "core/numerics/step_limits.h"
+#include "core/solid/implicit_springs.h"
 
 namespace vat {
 namespace {
@@ -44,6 +45,7 @@ class Missing {
   }
   void check_body(std::size_t index);
   void check_laws();
+  void check_projections(const std::string& path);
   void check_motions();
   bool is_incompressible() const {
     return model_.liquid_count > 0 && scene_.pressure_solver == PressureSolver::incompressible;
@@ -125,9 +127,19 @@ void Missing::check_liquid() {
   check_laws();
 }
 
+void Missing::check_projections(const std::string& path) {
+  reject(scene_.numerics.integrator != IntegratorId::velocity_verlet, "/numerics/integrator",
+         "must be velocity_verlet with contacts by projection");
+  reject(std::ranges::any_of(scene_.bodies, has_motion), path,
+         "must have the law penalty in a scene with driven bodies");
+  reject(has_implicit_springs(model_), path,
+         "must have the law penalty in a scene with implicit springs");
+}
+
 void Missing::check_laws() {
   const std::string path = scene_.interfaces.empty() ? "/default_interface" : "/interfaces";
-  reject(model_.has_layers || model_.has_projection, path, "must have the law penalty");
+  reject(model_.has_layers, path, "must have the law penalty or projection");
+  if (model_.has_projection) check_projections(path);
   reject(model_.has_restitution, path, "must have a damping in place of a restitution");
 }
 

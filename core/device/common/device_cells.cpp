@@ -14,6 +14,22 @@ std::size_t scan_blocks(std::size_t cells) {
 
 }  // namespace
 
+DevicePrefixSums::DevicePrefixSums(Program& program, std::size_t count)
+    : program_(program), count_(count), block_sums_(program, scan_blocks(count) * kCellNumber) {}
+
+std::size_t DevicePrefixSums::bytes_for(std::size_t count) {
+  return scan_blocks(count) * kCellNumber;
+}
+
+void DevicePrefixSums::sum(const opencl::Buffer& values, const opencl::Buffer& begins) {
+  const auto count = static_cast<std::int32_t>(count_);
+  const std::size_t blocks = scan_blocks(count_);
+  const std::size_t scanners = blocks * Program::kGroup;
+  program_.run("sum_blocks", scanners, count, values, block_sums_);
+  program_.run("scan_sums", Program::kGroup, static_cast<std::int32_t>(blocks), block_sums_);
+  program_.run("scan_blocks", scanners, count, values, block_sums_, begins);
+}
+
 DeviceCells::DeviceCells(Program& program, std::size_t particles, std::size_t cells)
     : begins(program, (cells + 1) * kCellNumber),
       cell_of(program, particles * kCellNumber),
@@ -23,10 +39,10 @@ DeviceCells::DeviceCells(Program& program, std::size_t particles, std::size_t ce
       program_(program),
       count_(particles),
       cells_(cells),
-      block_sums_(program, scan_blocks(cells) * kCellNumber) {}
+      sums_(program, cells) {}
 
 std::size_t DeviceCells::bytes_for(std::size_t particles, std::size_t cells) {
-  return (3 * particles + 2 * cells + 1 + scan_blocks(cells)) * kCellNumber;
+  return (3 * particles + 2 * cells + 1) * kCellNumber + DevicePrefixSums::bytes_for(cells);
 }
 
 void DeviceCells::clear() {
@@ -34,12 +50,7 @@ void DeviceCells::clear() {
 }
 
 void DeviceCells::sort() {
-  const auto cells = static_cast<std::int32_t>(cells_);
-  const std::size_t blocks = scan_blocks(cells_);
-  const std::size_t scanners = blocks * Program::kGroup;
-  program_.run("sum_blocks", scanners, cells, counts, block_sums_);
-  program_.run("scan_sums", Program::kGroup, static_cast<std::int32_t>(blocks), block_sums_);
-  program_.run("scan_blocks", scanners, cells, counts, block_sums_, begins);
+  sums_.sum(counts, begins);
   program_.run("scatter", count_, static_cast<std::int32_t>(count_), cell_of, rank, begins,
                unsorted);
 }

@@ -6,6 +6,23 @@
 
 namespace vat {
 
+/// Prefix sums of a fixed number of integers on a device.
+class DevicePrefixSums {
+ public:
+  DevicePrefixSums(opencl::Program& program, std::size_t count);
+
+  /// Returns the bytes of the buffers.
+  static std::size_t bytes_for(std::size_t count);
+
+  /// Sets `begins` to the sums of the preceding `values`, and to the total behind the last one.
+  void sum(const opencl::Buffer& values, const opencl::Buffer& begins);
+
+ private:
+  opencl::Program& program_;
+  const std::size_t count_;
+  opencl::Buffer block_sums_;
+};
+
 /// Cells with particles on a device, and the particles in the order of their cells. The functions
 /// throw opencl::DeviceFailure.
 class DeviceCells {
@@ -34,7 +51,7 @@ class DeviceCells {
   opencl::Program& program_;
   const std::size_t count_;
   const std::size_t cells_;
-  opencl::Buffer block_sums_;
+  DevicePrefixSums sums_;
 };
 
 }  // namespace vat

@@ -174,6 +174,16 @@ void DeviceRigidBodies::begin_drive(const Model& model, Real start, Real step) {
   }
 }
 
+void DeviceRigidBodies::kick(Real dt) {
+  if (count_ == 0) return;
+  program_.run("kick_rigid_bodies", count_, number_of(count_), dt, force, poses);
+}
+
+void DeviceRigidBodies::check(const SolidParameters& p, Real step, const Buffer& counters) {
+  if (count_ == 0) return;
+  program_.run("check_rigid_bodies", count_, p, number_of(count_), step, rigid, poses, counters);
+}
+
 void DeviceRigidBodies::finish(const SolidParameters& p, Real step, const Buffer& counters) {
   if (count_ == 0) return;
   program_.run("finish_rigid_bodies", count_, p, static_cast<std::int32_t>(count_), step, rigid,

@@ -40,6 +40,10 @@ class DeviceRigidBodies {
   void drive(const Model& model, Real start, Real end);
   /// Gives the driven bodies their mean velocities in a step of `step` from `start` [s].
   void begin_drive(const Model& model, Real start, Real step);
+  /// Kicks the bodies by the forces over `dt` [s].
+  void kick(Real dt);
+  /// Checks the state at the end of a step.
+  void check(const SolidParameters& p, Real step, const opencl::Buffer& counters);
   /// Ends the last step of a call.
   void finish(const SolidParameters& p, Real step, const opencl::Buffer& counters);
   /// Sets the positions and velocities of the particles.
@@ -48,6 +52,9 @@ class DeviceRigidBodies {
   /// Sums the forces on the particles. `bounds` receives the bound of each body.
   void gather(bool has_friction, const opencl::Buffer& position, const opencl::Buffer& radius,
               const opencl::Buffer& particle_force, const opencl::Buffer& bounds);
+
+  /// Returns the velocities by body of the scene.
+  const opencl::Buffer& speeds() const { return speeds_; }
 
   opencl::Buffer rigid, rigid_of, poses, force;
   opencl::Buffer spins;   ///< by body of the scene; 0 for deformable bodies [rad/s]

@@ -61,6 +61,7 @@ DeviceSolids::DeviceSolids(Program& program, const Model& model, const GuardBoun
   if (model.springs_change) spring_changes_.emplace(program, model);
   if (has_implicit_springs(model)) implicit_springs_.emplace(program, model);
   if (!model.limited_springs.empty()) elongation_.emplace(program, model);
+  if (model.has_projection) projection_.emplace(program, model);
 }
 
 std::size_t DeviceSolids::bytes_for(const Model& model) {
@@ -74,7 +75,8 @@ std::size_t DeviceSolids::bytes_for(const Model& model) {
          (keeps_forces(model) ? 0 : DeviceIntegration::bytes_for(model)) +
          (model.springs_change ? DeviceSpringChanges::bytes_for(model) : 0) +
          (has_implicit_springs(model) ? DeviceImplicitSprings::bytes_for(model) : 0) +
-         (model.limited_springs.empty() ? 0 : DeviceElongation::bytes_for(model));
+         (model.limited_springs.empty() ? 0 : DeviceElongation::bytes_for(model)) +
+         (model.has_projection ? DeviceProjection::bytes_for(model) : 0);
 }
 
 void DeviceSolids::write(const State& state) {
@@ -85,6 +87,7 @@ void DeviceSolids::write(const State& state) {
   rigid_.write(model_, state);
   damping_.find_mass(model_, state.step_count);
   if (spring_changes_) spring_changes_->write(model_, state.now, tables_);
+  if (projection_) projection_->write(state.now);
 }
 
 void DeviceSolids::read() {
@@ -95,6 +98,7 @@ void DeviceSolids::read() {
   }
   rigid_.read();
   if (spring_changes_) spring_changes_->read(tables_);
+  if (projection_) projection_->read();
 }
 
 void DeviceSolids::copy_to(State& state) const {
@@ -108,6 +112,7 @@ void DeviceSolids::copy_to(State& state) const {
   if (model_.has_friction) forces.friction_torque.assign(model_.particle_count, Vec3::Zero());
   rigid_.copy_to(state);
   if (spring_changes_) spring_changes_->copy_to(state.now);
+  if (projection_) projection_->copy_to(state.now);
   for (std::size_t b = 0; b < rigid_.count(); ++b) {
     pose_rigid_body(model_, model_.rigid_bodies[b], state.now.rigid[b], state.now);
   }
@@ -120,6 +125,7 @@ void DeviceSolids::save() {
   if (spring_changes_) spring_changes_->save(tables_);
   if (implicit_springs_) implicit_springs_->clear_counts();
   if (elongation_) elongation_->clear_counts();
+  if (projection_) projection_->save();
   saved_bound_ = bound_;
 }
 
@@ -128,6 +134,7 @@ void DeviceSolids::restore() {
   program_.copy(saved_force_, force_, range_.count * kVector);
   rigid_.restore();
   if (spring_changes_) spring_changes_->restore(tables_);
+  if (projection_) projection_->restore();
   bound_ = saved_bound_;
 }
 
@@ -136,12 +143,13 @@ void DeviceSolids::move(const StepMoment& start, Real end, Real step,
   const SolidTables& t = tables_;
   SolidParameters before = geometry_.at(model_, start);
   const SolidParameters after = parameters(end);
+  if (has_divided_kicks()) divide_kicks(before, start.time, step, counters);
   rigid_.move(before, step, counters);
   start.drift > 0 ? rigid_.drive(model_, start.time, end)
                   : rigid_.begin_drive(model_, start.time, step);
   rigid_.pose(after, motion_.position, predicted_, counters);
+  if (has_divided_kicks()) before.closing = before.opening = 0;
   cells_.clear();
-  if (has_divided_kicks() && range_.free > 0) divide_kicks(before, counters);
   program_.run("move_solids", range_.count, before, motion_.position, motion_.velocity, predicted_,
                force_, t.mobility, t.body_of, t.bodies, cells_.cell_of, cells_.rank, cells_.counts,
                counters);
@@ -156,6 +164,8 @@ void DeviceSolids::move(const StepMoment& start, Real end, Real step,
 }
 
 void DeviceSolids::kick(Real dt) {
+  if (projection_) rigid_.kick(dt);
+  if (range_.free == 0) return;
   program_.run("kick_solids", range_.free, number_of(range_.free), dt, motion_.velocity, force_,
                tables_.mobility);
 }
@@ -166,19 +176,24 @@ void DeviceSolids::limit_springs(Real dt) {
                      motion_.velocity, tables_.mobility);
 }
 
-void DeviceSolids::end_divided_step(const SolidParameters& p, const opencl::Buffer& counters) {
+void DeviceSolids::end_divided_step(const SolidParameters& p, Real time, Real step,
+                                    const opencl::Buffer& counters) {
   if (p.closing == 0) return;
   const SolidTables& t = tables_;
   kick(p.closing);
+  if (projection_) projection_->finish(model_, p, time, step, projected(), counters);
   if (implicit_springs_) {
     implicit_springs_->damp(p.closing, t, motion_.position, motion_.velocity);
   }
+  if (projection_) rigid_.check(p, step, counters);
+  if (range_.free == 0) return;
   program_.run("check_solids", range_.free, p, motion_.position, motion_.velocity, t.mobility,
                t.body_of, t.bodies, counters);
 }
 
-void DeviceSolids::divide_kicks(SolidParameters& p, const opencl::Buffer& counters) {
-  end_divided_step(p, counters);
+void DeviceSolids::divide_kicks(SolidParameters& p, Real time, Real step,
+                                const opencl::Buffer& counters) {
+  end_divided_step(p, time, step, counters);
   if (p.drift > 0) {
     const SolidTables& t = tables_;
     if (implicit_springs_) {
@@ -186,12 +201,16 @@ void DeviceSolids::divide_kicks(SolidParameters& p, const opencl::Buffer& counte
     }
     kick(p.opening);
     limit_springs(p.drift);
+    if (projection_) {
+      projection_->drift(model_, parameters(time + p.drift), time, p.drift, projected(), counters);
+      p.drift = 0;
+    }
     if (implicit_springs_) {
       implicit_springs_->drift(p.drift, t, motion_.position, motion_.velocity);
     }
   }
-  p.closing = 0;
-  p.opening = 0;
+  // Otherwise, the kernels of rigid bodies kick them.
+  if (projection_) p.closing = p.opening = 0;
 }
 
 void DeviceSolids::find_forces(Real end) {
@@ -230,12 +249,9 @@ std::uint32_t DeviceSolids::solve_damping(Real end, Real dt) {
 
 void DeviceSolids::finish(const StepMoment& moment, Real step, const opencl::Buffer& counters) {
   const SolidParameters p = geometry_.at(model_, moment);
-  rigid_.finish(p, step, counters);
-  if (range_.free == 0) return;
-  if (has_divided_kicks()) {
-    end_divided_step(p, counters);
-    return;
-  }
+  if (has_divided_kicks()) end_divided_step(p, moment.time, step, counters);
+  if (!projection_) rigid_.finish(p, step, counters);
+  if (range_.free == 0 || has_divided_kicks()) return;
   program_.run("finish_solids", range_.free, p, motion_.position, motion_.velocity, force_,
                tables_.mobility, tables_.body_of, tables_.bodies, counters);
 }

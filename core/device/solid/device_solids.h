@@ -13,6 +13,7 @@
 #include "core/device/solid/device_elongation.h"
 #include "core/device/solid/device_implicit_springs.h"
 #include "core/device/solid/device_integration.h"
+#include "core/device/solid/device_projection.h"
 #include "core/device/solid/device_rigid_bodies.h"
 #include "core/device/solid/device_spring_changes.h"
 #include "core/device/solid/solid_geometry.h"
@@ -60,6 +61,7 @@ class DeviceSolids {
   void count_work(AdvanceReport& report) {
     if (implicit_springs_) implicit_springs_->count(report);
     if (elongation_) elongation_->count(report);
+    if (projection_) projection_->count(report);
   }
   /// Moves liquid particles into a periodic world, see DeviceMotion::wrap_liquid().
   void wrap_liquid() { motion_.wrap_liquid(model_); }
@@ -115,13 +117,17 @@ class DeviceSolids {
   void find_bound();
   /// Returns whether there is work between the kicks of two steps, or between a kick and a drift.
   bool has_divided_kicks() const {
-    return implicit_springs_.has_value() || elongation_.has_value();
+    return implicit_springs_.has_value() || elongation_.has_value() || projection_.has_value();
   }
   /// The kicks of move(), and all work between them and the drift. The remaining parts of `p` are
   /// those of the kernel move_solids.
-  void divide_kicks(SolidParameters& p, const opencl::Buffer& counters);
-  /// Ends a step with its closing kick, and checks the state.
-  void end_divided_step(const SolidParameters& p, const opencl::Buffer& counters);
+  void divide_kicks(SolidParameters& p, Real time, Real step, const opencl::Buffer& counters);
+  /// Ends a step with its closing kick at `time` [s], and checks the state.
+  void end_divided_step(const SolidParameters& p, Real time, Real step,
+                        const opencl::Buffer& counters);
+  ProjectedSolids projected() {
+    return {tables_, motion_, rigid_, cells_, order_, sorted_position_, predicted_};
+  }
   void kick(Real dt);
   /// Limits the elongation of springs in the next drift of `dt` [s].
   void limit_springs(Real dt);
@@ -149,6 +155,7 @@ class DeviceSolids {
   std::optional<DeviceSpringChanges> spring_changes_;  ///< only if springs change
   std::optional<DeviceImplicitSprings> implicit_springs_;
   std::optional<DeviceElongation> elongation_;  ///< only if springs are limited
+  std::optional<DeviceProjection> projection_;
   ReadMotion read_;
   std::vector<Vec3> read_forces_;
   Oscillation bound_, saved_bound_;  ///< of the last forces

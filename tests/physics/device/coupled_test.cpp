@@ -98,6 +98,8 @@ const SceneCase kRigidScenes[] = {
        scene.bodies[1].velocity.setZero();
        scene.bodies[1].angular_velocity.setZero();
      }},
+    {"ball with contacts by projection",
+     [](Scene& scene) { scene.default_interface.law = InterfaceLaw::projection; }},
     {"piston", add_piston},
     {"piston in two dimensions",
      [](Scene& scene) {
@@ -363,7 +365,8 @@ TEST(CoupledDevice, RefusesFeaturesThatItLacks) {
          add_piston(s);
          s.bodies[2].angular_velocity = {0, 0, 1};
        }},
-      {"/default_interface", [](Scene& s) { s.default_interface.law = InterfaceLaw::projection; }},
+      {"/default_interface",
+       [](Scene& s) { s.default_interface.law = InterfaceLaw::lennard_jones; }},
   };
   expect_refusals(make_pool(), cases);
 }

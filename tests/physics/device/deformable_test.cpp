@@ -293,7 +293,6 @@ TEST(DeformableDevice, SolvesForStrongDamping) {
 TEST(DeformableDevice, RefusesFeaturesThatItLacks) {
   const SceneCase cases[] = {
       {"/numerics/control", [](Scene& s) { s.numerics.control = StepControl::adaptive; }},
-      {"/default_interface", [](Scene& s) { s.default_interface.law = InterfaceLaw::projection; }},
       {"/default_interface",
        [](Scene& s) { s.default_interface.law = InterfaceLaw::lennard_jones; }},
       {"/interfaces",

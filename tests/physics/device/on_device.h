@@ -68,6 +68,7 @@ inline void expect_motion_of_cpu(const Scene& scene, std::uint32_t steps) {
   EXPECT_EQ(report.force_evaluations, expected.force_evaluations);
   EXPECT_EQ(report.wall_stops, expected.wall_stops);
   EXPECT_EQ(report.iterations.damping, expected.iterations.damping);
+  EXPECT_EQ(report.iterations.contacts, expected.iterations.contacts);
   EXPECT_EQ(report.iterations.springs, expected.iterations.springs);
   EXPECT_EQ(report.iterations.elongation, expected.iterations.elongation);
   EXPECT_EQ(expected.undone_steps, 0U);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "protocol/scene/scene_json.h"
+#include "tests/physics/device/heap.h"
 #include "tests/physics/device/on_device.h"
 #include "tests/support/scenes.h"
 
@@ -13,45 +14,6 @@ namespace vat::device_rigid_test {
 namespace {
 
 using namespace test;
-
-constexpr Real kSpacing = 0.04;
-
-BodyDescription make_rigid(const std::string& name, const Vec3& position, const Shape& shape) {
-  BodyDescription body{name, BodyKind::rigid, "wood", shape, kSpacing};
-  body.position = position;
-  return body;
-}
-
-/// A plate, a ball and a rod that spin and fall on the floor, on a wall, and on each other.
-Scene make_heap() {
-  Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
-  scene.gravity = {0, 0, -9.81};
-  scene.materials = {make_material("wood", 600)};
-  scene.default_interface = {20000, 10};
-  scene.vat = Vat{{0, 0, 0}, {0.6, 0.4, 0.8}, false, {}};
-  scene.bodies = {make_rigid("plate", {0.15, 0.2, 0.1}, BoxShape{Vec3::Zero(), {0.2, 0.16, 0.08}}),
-                  make_rigid("ball", {0.2, 0.22, 0.28}, SphereShape{Vec3::Zero(), 0.08}),
-                  make_rigid("rod", {0.3, 0.2, 0.46}, BoxShape{Vec3::Zero(), {0.32, 0.08, 0.08}})};
-  scene.bodies[0].velocity = {-1, 0, -1};
-  scene.bodies[0].angular_velocity = {1, 2, 0.5};
-  scene.bodies[1].velocity = {-0.5, 0.2, -1};
-  scene.bodies[1].angular_velocity = {4, -3, 2};
-  scene.bodies[2].velocity = {0, 0, -2};
-  scene.bodies[2].angular_velocity = {-5, 1, 3};
-  scene.bodies[2].orientation = Quat(0.8, 0.1, 0.3, 0.2).normalized();
-  return scene;
-}
-
-void add_jelly(Scene& scene) {
-  scene.materials.push_back(make_material("jelly", 400));
-  scene.materials[1].springs =
-      LatticeSprings{SpringConstants{600, 1}, SpringConstants{300, 0.5}, SpringConstants{150, 0.2}};
-  BodyDescription jelly{"jelly", BodyKind::deformable, "jelly",
-                        BoxShape{Vec3::Zero(), {0.16, 0.16, 0.12}}, kSpacing};
-  jelly.position = {0.45, 0.2, 0.1};
-  jelly.velocity = {-1, 0, -1};
-  scene.bodies.push_back(std::move(jelly));
-}
 
 const SceneCase kScenes[] = {
     {"unchanged", [](Scene&) {}},
@@ -215,7 +177,7 @@ TEST(RigidDevice, LeavesAFailedStepToTheCpu) {
 TEST(RigidDevice, LeavesAFastRotationToTheCpu) {
   Scene scene = make_ball(Vec3::Zero(), {0, 0, 1200});
   scene.bodies[0].shape = make_particles({{0, 0, 0}}, 0.1);
-  scene.bodies[0].radius = kSpacing / 2;
+  scene.bodies[0].radius = kHeapSpacing / 2;
   expect_steps_of_cpu(scene, 1);
 }
 
@@ -271,7 +233,7 @@ TEST(RigidDevice, HoldsABodyUntilItsRelease) {
     EXPECT_EQ(advance(before - 20), before < kRelease ? before - 20 : 0U);
     EXPECT_EQ(advance(10), before < kRelease ? 0U : 10U);
     EXPECT_EQ(advance(30), 30U);
-    EXPECT_GT((device.bodies()[1].pose->center_of_mass - held).norm(), 0.1 * kSpacing);
+    EXPECT_GT((device.bodies()[1].pose->center_of_mass - held).norm(), 0.1 * kHeapSpacing);
     EXPECT_LT(difference(device, cpu), rounding_after(before + 40));
   }
 }

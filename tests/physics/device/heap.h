@@ -1,0 +1,53 @@
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "core/simulation/simulation.h"
+#include "tests/support/scenes.h"
+
+/// A heap of rigid bodies.
+namespace vat::test {
+
+inline constexpr Real kHeapSpacing = 0.04;  // [m]
+
+inline BodyDescription make_rigid(const std::string& name, const Vec3& position,
+                                  const Shape& shape) {
+  BodyDescription body{name, BodyKind::rigid, "wood", shape, kHeapSpacing};
+  body.position = position;
+  return body;
+}
+
+/// A plate, a ball and a rod that spin and fall on the floor, on a wall, and on each other.
+inline Scene make_heap() {
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
+  scene.gravity = {0, 0, -9.81};
+  scene.materials = {make_material("wood", 600)};
+  scene.default_interface = {20000, 10};
+  scene.vat = Vat{{0, 0, 0}, {0.6, 0.4, 0.8}, false, {}};
+  scene.bodies = {make_rigid("plate", {0.15, 0.2, 0.1}, BoxShape{Vec3::Zero(), {0.2, 0.16, 0.08}}),
+                  make_rigid("ball", {0.2, 0.22, 0.28}, SphereShape{Vec3::Zero(), 0.08}),
+                  make_rigid("rod", {0.3, 0.2, 0.46}, BoxShape{Vec3::Zero(), {0.32, 0.08, 0.08}})};
+  scene.bodies[0].velocity = {-1, 0, -1};
+  scene.bodies[0].angular_velocity = {1, 2, 0.5};
+  scene.bodies[1].velocity = {-0.5, 0.2, -1};
+  scene.bodies[1].angular_velocity = {4, -3, 2};
+  scene.bodies[2].velocity = {0, 0, -2};
+  scene.bodies[2].angular_velocity = {-5, 1, 3};
+  scene.bodies[2].orientation = Quat(0.8, 0.1, 0.3, 0.2).normalized();
+  return scene;
+}
+
+/// Adds a deformable body beside the heap.
+inline void add_jelly(Scene& scene) {
+  scene.materials.push_back(make_material("jelly", 400));
+  scene.materials[1].springs =
+      LatticeSprings{SpringConstants{600, 1}, SpringConstants{300, 0.5}, SpringConstants{150, 0.2}};
+  BodyDescription jelly{"jelly", BodyKind::deformable, "jelly",
+                        BoxShape{Vec3::Zero(), {0.16, 0.16, 0.12}}, kHeapSpacing};
+  jelly.position = {0.45, 0.2, 0.1};
+  jelly.velocity = {-1, 0, -1};
+  scene.bodies.push_back(std::move(jelly));
+}
+
+}  // namespace vat::test
