@@ -5,6 +5,23 @@
 #include "core/support/check.h"
 
 namespace vat {
+namespace {
+
+/// Returns the first step after `step` at which a body is released, and at most `end`.
+std::uint64_t next_release(const Model& model, std::uint64_t step, std::uint64_t end) {
+  for (const RigidModel& rigid : model.rigid_bodies) {
+    if (rigid.free_from > step) end = std::min(end, rigid.free_from);
+  }
+  return end;
+}
+
+}  // namespace
+
+bool releases_body(const Model& model, std::uint64_t step) {
+  return step > 0 && std::ranges::any_of(model.rigid_bodies, [&](const RigidModel& rigid) {
+           return rigid.free_from == step;
+         });
+}
 
 void VerletMethod::take_step(StepMoment moment, Real end, AdvanceReport& report) {
   const bool solves = must_solve(moment.drift);
@@ -36,23 +53,27 @@ bool VerletMethod::take_nominal_steps(const NominalSteps& steps, AdvanceReport& 
   return true;
 }
 
-bool VerletMethod::releases_body(std::uint64_t first, std::uint32_t steps) const {
-  return std::ranges::any_of(model_->rigid_bodies, [&](const RigidModel& rigid) {
-    return rigid.free_from != kNever && rigid.free_from > first && rigid.free_from <= first + steps;
-  });
-}
-
 bool VerletMethod::take_steps(const EngineInput& input, std::uint32_t steps) {
   VAT_CHECK(steps > 0);
   const State& state = input.state;
-  if (releases_body(state.step_count, steps)) return false;
   if (!input.continues) write(state);
   save();
   counters().clear();
   AdvanceReport report = input.report;
-  const bool is_valid = take_nominal_steps({state.step_count, steps, model_->scene.numerics.step,
-                                            input.continues || state.forces_current},
-                                           report);
+  NominalSteps part{state.step_count, 0, model_->scene.numerics.step,
+                    input.continues || state.forces_current};
+  const std::uint64_t end = state.step_count + steps;
+  bool is_valid = true;
+  for (std::uint64_t step = state.step_count; step < end && is_valid; step += part.count) {
+    part.first = step;
+    part.count = static_cast<std::uint32_t>(next_release(*model_, step, end) - step);
+    if (releases_body(*model_, step)) {
+      release(step);
+      part.has_forces = false;
+    }
+    is_valid = take_nominal_steps(part, report);
+    part.has_forces = true;
+  }
   const Counters counted = counters().read();
   if (!is_valid || counted.faults != 0) {
     restore();

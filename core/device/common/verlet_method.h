@@ -21,6 +21,10 @@ struct NominalSteps {
   Real time(std::uint32_t steps) const { return static_cast<Real>(first + steps) * step; }
 };
 
+/// Returns whether a body is released at the start of `step`. The kept forces do not act on this
+/// body; see SimulationImpl::take_guarded_steps().
+bool releases_body(const Model& model, std::uint64_t step);
+
 /// Steps of velocity Verlet on a device. The kick at the end of a step is a part of the next step,
 /// or of finish().
 class VerletMethod : public DeviceMethod {
@@ -35,6 +39,8 @@ class VerletMethod : public DeviceMethod {
   virtual DeviceCounters& counters() = 0;
   /// Writes a state to the device.
   virtual void write(const State& state) = 0;
+  /// Releases the bodies that are free from `step` on.
+  virtual void release(std::uint64_t step) = 0;
   /// Saves the present state, or returns to the saved one.
   virtual void save() = 0;
   virtual void restore() = 0;
@@ -61,10 +67,6 @@ class VerletMethod : public DeviceMethod {
   void take_step(StepMoment moment, Real end, AdvanceReport& report);
 
  private:
-  /// Returns whether a body is released in or after one of these steps. The kept forces do not act
-  /// on a body that was held; see SimulationImpl::take_guarded_steps().
-  bool releases_body(std::uint64_t first, std::uint32_t steps) const;
-
   const std::shared_ptr<const Model> model_;
 };
 

@@ -95,7 +95,6 @@ void DeviceRigidBodies::write(const Model& model, const State& state) {
   read_forces_.clear();
   for (std::size_t b = 0; b < count_; ++b) {
     const RigidState& body = state.now.rigid[b];
-    constants_[b].is_held = model.rigid_bodies[b].is_held(state.step_count) ? 1 : 0;
     Pose& pose = read_poses_.emplace_back();
     store(body.center_of_mass, pose.center);
     store(body.orientation, pose.orientation);
@@ -104,9 +103,17 @@ void DeviceRigidBodies::write(const Model& model, const State& state) {
     read_forces_.push_back(state.forces.rigid_force[b]);
     read_forces_.push_back(state.forces.rigid_torque[b]);
   }
-  program_.write(rigid, std::span<const Constants>(constants_));
+  hold(model, state.step_count);
   program_.write(poses, std::span<const Pose>(read_poses_));
   program_.write(force, std::span<const Vec3>(read_forces_));
+}
+
+void DeviceRigidBodies::hold(const Model& model, std::uint64_t step) {
+  if (count_ == 0) return;
+  for (std::size_t b = 0; b < count_; ++b) {
+    constants_[b].is_held = model.rigid_bodies[b].is_held(step) ? 1 : 0;
+  }
+  program_.write(rigid, std::span<const Constants>(constants_));
 }
 
 void DeviceRigidBodies::read() {

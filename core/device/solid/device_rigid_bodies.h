@@ -26,6 +26,8 @@ class DeviceRigidBodies {
 
   /// Writes the motion and forces, and which bodies are held in the next step.
   void write(const Model& model, const State& state);
+  /// Writes which bodies are held in `step`.
+  void hold(const Model& model, std::uint64_t step);
   /// Reads the poses and forces. The functions copy_to() then write them.
   void read();
   void copy_to(State& state) const;

@@ -38,6 +38,11 @@ class DeviceSolids {
 
   /// Writes the part of a state with current forces, or before its first evaluation.
   void write(const State& state);
+  /// Releases the bodies that are free from `step` on.
+  void release(std::uint64_t step) {
+    rigid_.hold(model_, step);
+    damping_.find_mass(model_, step);
+  }
   /// Reads the state. The function copy_to() then writes it.
   void read();
   void copy_to(State& state) const;

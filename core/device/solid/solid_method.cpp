@@ -17,7 +17,7 @@ void SolidMethod::read(State& state) {
   state.forces.particle.resize(model().particle_count);
   solids_.copy_to(state);
   if (!keeps_forces()) return;
-  state.forces_current = true;
+  state.forces_current = !releases_body(model(), state.step_count);
   if (model().damping.any) state.bound = solids_.bound();
 }
 

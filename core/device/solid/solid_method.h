@@ -30,6 +30,7 @@ class SolidMethod : public VerletMethod {
  private:
   DeviceCounters& counters() override { return counters_; }
   void write(const State& state) override { solids_.write(state); }
+  void release(std::uint64_t step) override { solids_.release(step); }
   void save() override { solids_.save(); }
   void restore() override { solids_.restore(); }
   bool must_solve(Real dt) const override { return solids_.must_solve(dt); }

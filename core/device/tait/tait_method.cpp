@@ -103,6 +103,9 @@ class TaitMethod : public VerletMethod {
  private:
   DeviceCounters& counters() override { return particles_.counters; }
   void write(const State& state) override;
+  void release(std::uint64_t step) override {
+    if (solids_) solids_->release(step);
+  }
   void save() override;
   void restore() override;
   void evaluate(const StepMoment& start, Real end) override;
@@ -183,7 +186,7 @@ void TaitMethod::read(State& state) {
         Vec3(static_cast<Real>(a.x), static_cast<Real>(a.y), static_cast<Real>(a.z));
   }
   if (transport_) transport_->copy_to(state.forces);
-  state.forces_current = keeps_forces(model());
+  state.forces_current = keeps_forces(model()) && !releases_body(model(), state.step_count);
   if (adaptive_) state.history = adaptive_->history;
   state.bound = model().damping.any ? find_bound_of_bodies(model()) : Oscillation{};
   if (!solids_) return;
