@@ -112,7 +112,8 @@ void Missing::check_liquid() {
   reject(control == StepControl::local, "/numerics/control", "must be fixed or adaptive");
   reject(control == StepControl::adaptive && solids_move(model_), "/numerics/control",
          "must be fixed in a scene with bodies that can move");
-  reject(may_solve_viscosity(model_) && (is_incompressible() || solids_move(model_)),
+  reject(may_solve_viscosity(model_) &&
+             (is_incompressible() ? control == StepControl::adaptive : solids_move(model_)),
          "/numerics/step", "must resolve the viscosity of the liquid");
   reject(is_incompressible() && model_.has_surface_tension, "/materials",
          "must have no surface tension with the pressure solver incompressible");

@@ -6,10 +6,12 @@
 #include <utility>
 #include <vector>
 
+#include "core/damping/damping_solve.h"
 #include "core/device/common/device_motion.h"
 #include "core/device/incompressible/device_solve.h"
 #include "core/device/liquid/device_particles.h"
 #include "core/device/liquid/device_step_control.h"
+#include "core/device/tait/device_viscosity.h"
 #include "core/liquid/incompressible/solve_limits.h"
 #include "core/stepping/control/step_control.h"
 #include "core/support/check.h"
@@ -34,6 +36,23 @@ struct IncompressibleState {
   Buffer pressure;
 };
 
+/// The solve for the viscosity, and the accelerations by it.
+struct ViscousLiquid {
+  ViscousLiquid(Program& program, const Model& model)
+      : solve(program, model), acceleration(program, model.liquid_count * sizeof(Float4)) {}
+  static std::size_t bytes_for(const Model& model) {
+    return DeviceViscosity::bytes_for(model) + model.liquid_count * sizeof(Float4);
+  }
+
+  DeviceViscosity solve;
+  Buffer acceleration;
+};
+
+/// Returns whether a step is too long for explicit viscosity.
+bool needs_viscosity_solve(const Model& model) {
+  return must_solve_own_damping(model, model.scene.numerics.step);
+}
+
 /// Steps of symplectic Euler, as Stepper::take_step(). Cells, neighbours and densities are those
 /// of the present positions at the start of each step.
 class IncompressibleMethod : public DeviceMethod {
@@ -51,6 +70,7 @@ class IncompressibleMethod : public DeviceMethod {
     if (model_->scene.numerics.control == StepControl::adaptive) {
       control_.emplace(program, *model_, solve_.partial);
     }
+    if (needs_viscosity_solve(*model_)) viscous_.emplace(program, *model_);
   }
 
   bool take_steps(const EngineInput& input, std::uint32_t steps) override;
@@ -68,7 +88,9 @@ class IncompressibleMethod : public DeviceMethod {
   void find_acceleration(const LiquidParameters& p, const Buffer& acceleration);
   /// Returns whether the state after the step is valid.
   bool take_step(const StepPart& step, AdvanceReport& report);
-  void project_velocities(const StepPart& step);
+  void project_velocities(const StepPart& step, AdvanceReport& report);
+  /// Changes the velocities by the forces.
+  void kick(const LiquidParameters& p, const SolveParameters& solve, AdvanceReport& report);
   void correct_density(LiquidParameters p);
   /// Takes a nominal step. Returns whether the state is valid.
   bool take_nominal_step(const StepPart& nominal, AdvanceReport& report);
@@ -86,8 +108,9 @@ class IncompressibleMethod : public DeviceMethod {
   IncompressibleState start_;                 ///< state before a call, for a failed step
   std::optional<DeviceStepControl> control_;  ///< only with adaptive steps
   StepHistory history_;
-  VolumeReport report_;       ///< of the last step
-  int shift_iterations_ = 0;  ///< of the last solve for positions
+  std::optional<ViscousLiquid> viscous_;  ///< only if steps do not resolve the viscosity
+  VolumeReport report_;                   ///< of the last step
+  int shift_iterations_ = 0;              ///< of the last solve for positions
   ReadMotion read_;
   std::vector<Real> pressures_;
 };
@@ -140,8 +163,27 @@ void IncompressibleMethod::find_acceleration(const LiquidParameters& p,
                s.sorted_motion, s.neighbour_counts, s.neighbours, acceleration);
 }
 
-void IncompressibleMethod::project_velocities(const StepPart& step) {
-  LiquidParameters p = geometry_.at(*model_, {step.start, 0, 0, 0, 0});
+void IncompressibleMethod::kick(const LiquidParameters& p, const SolveParameters& solve,
+                                AdvanceReport& report) {
+  DeviceParticles& s = particles_;
+  if (!viscous_) {
+    LiquidParameters without = p;
+    for (float& g : without.gravity) g = 0;
+    program_.run("kick", s.count(), without, solve, s.cells.begins, s.order, s.sorted_place,
+                 s.sorted_motion, s.neighbour_counts, s.neighbours, now_.motion.velocity,
+                 solve_.solve_motion);
+    return;
+  }
+  program_.run("find_acceleration", s.count(), p, s.cells.begins, s.order, s.sorted_place,
+               s.sorted_motion, s.neighbour_counts, s.neighbours, viscous_->acceleration);
+  report.iterations.damping +=
+      viscous_->solve.solve(p, s, now_.motion.velocity, solve.dt, viscous_->acceleration);
+  program_.run("kick_by_accelerations", s.count(), p, solve, s.order, s.sorted_place,
+               viscous_->acceleration, now_.motion.velocity, solve_.solve_motion);
+}
+
+void IncompressibleMethod::project_velocities(const StepPart& step, AdvanceReport& report) {
+  const LiquidParameters p = geometry_.at(*model_, {step.start, 0, 0, 0, 0});
   DeviceParticles& s = particles_;
   const std::size_t n = s.count();
   s.find_solid_pressure(p);
@@ -151,11 +193,9 @@ void IncompressibleMethod::project_velocities(const StepPart& step) {
   for (int k = 0; k < 3; ++k) {
     solve.wall_velocity[k] = wall_velocity[k];
     solve.gravity[k] = model_->scene.forces.gravity ? model_->scene.gravity[k] : 0;
-    p.gravity[k] = 0;
   }
   set_limits(velocity_limits(model_->scene.incompressible), solve);
-  program_.run("kick", n, p, solve, s.cells.begins, s.order, s.sorted_place, s.sorted_motion,
-               s.neighbour_counts, s.neighbours, now_.motion.velocity, solve_.solve_motion);
+  kick(p, solve, report);
   program_.run("begin_projection", n, p, solve, s.cells.begins, s.order, s.sorted_place,
                s.neighbour_counts, s.neighbours, solve_.solve_motion, particles_.density,
                solve_.squares, now_.pressure, solve_.x, solve_.excess, solve_.gradient,
@@ -189,7 +229,7 @@ void IncompressibleMethod::correct_density(LiquidParameters p) {
 }
 
 bool IncompressibleMethod::take_step(const StepPart& step, AdvanceReport& report) {
-  project_velocities(step);
+  project_velocities(step, report);
   LiquidParameters p = geometry_.at(*model_, {step.end, 0, 0, step.length, 0});
   p.greatest_speed2 = geometry_.greatest_speed2(step.length);
   correct_density(p);
@@ -275,7 +315,9 @@ bool IncompressibleMethod::take_steps(const EngineInput& input, std::uint32_t st
 std::size_t bytes_for_incompressible(const Model& model) {
   const LiquidGeometry geometry(model, guard_bounds(model));
   return DeviceParticles::bytes_for(model, geometry) + DeviceSolve::bytes_for(model) +
-         DeviceStepControl::bytes_for(model) + 2 * model.liquid_count * IncompressibleState::kBytes;
+         DeviceStepControl::bytes_for(model) +
+         2 * model.liquid_count * IncompressibleState::kBytes +
+         (needs_viscosity_solve(model) ? ViscousLiquid::bytes_for(model) : 0);
 }
 
 std::unique_ptr<DeviceMethod> make_incompressible_method(Program& program,

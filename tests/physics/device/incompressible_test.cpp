@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/damping/damping_solve.h"
 #include "tests/physics/device/on_device.h"
 #include "tests/support/scenes.h"
 
@@ -305,11 +306,43 @@ TEST(IncompressibleDevice, RestoresTheStateBeforeAFailedStep) {
   expect_restored_state(adaptive, 1, 2);
 }
 
+// The solves of the device and of the CPU meet the same tolerance.
+TEST(IncompressibleDevice, SolvesForStrongViscosity) {
+  constexpr std::uint32_t kSteps = 30;
+  const SceneCase cases[] = {
+      {"in a slip vat", [](Scene&) {}},
+      {"settling between no-slip walls that move",
+       [](Scene& scene) {
+         set_no_slip(scene);
+         scene.settling = Settling{20, 1};
+       }},
+      {"on fixed bodies in a sliding vat",
+       [](Scene& scene) {
+         add_fixed_bodies(scene);
+         scene.vat->motion = SlideMotion{{1, 0, 0}, 0.1, 0.2};
+       }},
+  };
+  for (const SceneCase& one : cases) {
+    SCOPED_TRACE(one.name);
+    Scene scene = make_column();
+    scene.materials[0].liquid->viscosity = 200;
+    one.edit(scene);
+    Simulation device = make_on_device(scene);
+    Simulation cpu = make_simulation(scene);
+    const AdvanceReport report = device.advance(kSteps);
+    const AdvanceReport expected = cpu.advance(kSteps);
+    EXPECT_EQ(report.device_steps, kSteps);
+    EXPECT_GT(report.iterations.damping, kSteps);
+    EXPECT_GT(expected.iterations.damping, kSteps);
+    const Real moved = difference(device, make_simulation(scene));
+    EXPECT_LT(difference(device, cpu), kDampingTolerance * moved);
+  }
+}
+
 TEST(IncompressibleDevice, RefusesFeaturesThatItLacks) {
   const SceneCase cases[] = {
       {"/forces/pressure", [](Scene& s) { s.forces.pressure = false; }},
       {"/numerics/control", [](Scene& s) { s.numerics.control = StepControl::local; }},
-      {"/numerics/step", [](Scene& s) { s.materials[0].liquid->viscosity = 200; }},
       {"/kernel", [](Scene& s) { s.kernel = KernelId::cubic_spline; }},
       {"/central_field",
        [](Scene& s) {
