@@ -232,6 +232,7 @@ ContactSolve::IslandResult ContactSolve::sweep_island(
   // The cost of these impulses is therefore shared by several steps.
   constexpr Real kAtRest = 0.01;  // greatest change of the first round
   constexpr std::size_t kStepsAtRest = 10;
+  constexpr Real kManyRounds = 16;
   constexpr int kMaxRuns = 2;
   // A prediction from fewer rounds than this part of the cost is not reliable enough.
   constexpr std::size_t kPatience = 6;
@@ -261,10 +262,11 @@ ContactSolve::IslandResult ContactSolve::sweep_island(
     progress.add(change);
     if (progress.has_prediction() && runs < kMaxRuns) {
       store_all();
-      std::size_t cost = own.newton.prepare(*this, constraints, island, scratch.place_of_end);
-      if (rests && cost != ContactNewton::kNever) cost /= kStepsAtRest;
-      if (progress.rounds() >= cost || (kPatience * progress.rounds() >= cost &&
-                                        progress.rounds_left() > static_cast<Real>(cost))) {
+      const std::size_t cost = own.newton.prepare(*this, constraints, island, scratch.place_of_end);
+      const std::size_t rounds = progress.rounds();
+      const Real left = progress.rounds_left();
+      if (rounds >= cost || (kPatience * rounds >= cost && left > static_cast<Real>(cost)) ||
+          (rests && kStepsAtRest * rounds >= cost && left > kManyRounds)) {
         own.excess.clear();
         for (const SweepRow& row : own.rows) own.excess.push_back(row.excess(row.slip()));
         result.iterations +=

@@ -1,10 +1,6 @@
 // Sweeps over contacts by projection, see ContactSolve::sweep(). A work-item relaxes the contacts of an
 // island one after another.
 
-int number_of_end(int free, global const ConstraintEnd* end) {
-  return end->rigid < 0 ? end->particle : free + end->rigid;
-}
-
 int root_of(global int* parents, int end) {
   while (parents[end] != end) {
     parents[end] = parents[parents[end]];
@@ -97,10 +93,10 @@ double excess_of(const ProjectionStep* step, global const Constraint* c, double3
       velocity_of_end(&c->ends[0], vector_at(c->ends[0].late_arm, 0), velocity, motions);
   const double3 start = vector_at(c->start, 0);
   if (c->wall >= 0) {
-    return product(late, normal) + (product(start, normal) - c->threshold) / step->dt;
+    return product(late, normal) + (product(start, normal) - c->required) / step->dt;
   }
   late -= velocity_of_end(&c->ends[1], vector_at(c->ends[1].late_arm, 0), velocity, motions);
-  return (size_of(start + step->dt * late) - c->threshold) / step->dt;
+  return (size_of(start + step->dt * late) - c->required) / step->dt;
 }
 
 // Relaxes a contact, see SweepRow::relax().

@@ -25,7 +25,7 @@ struct ProjectedLaw {
   double threshold, friction, restitution;
   std::int32_t is_projected, padding;
 };
-constexpr std::size_t kConstraint = 512;
+constexpr std::size_t kConstraint = 520;
 constexpr std::size_t kRigidMotion = 16 * sizeof(double);
 
 std::size_t at_least_one_of(std::size_t count) {
@@ -80,6 +80,7 @@ DeviceProjection::DeviceProjection(Program& program, const Model& model)
       predicted_motions_(program, at_least_one_of(bodies_) * kRigidMotion),
       parents_(program, ends_of(model) * kNumber),
       island_of_(program, ends_of(model) * kNumber),
+      is_hit_(program, ends_of(model) * kNumber),
       island_begins_(program, (capacity_ + 2) * kNumber),
       members_(program, capacity_ * kNumber) {
   VAT_CHECK(model.has_projection);
@@ -94,7 +95,7 @@ std::size_t DeviceProjection::bytes_for(const Model& model) {
   return DevicePrefixSums::bytes_for(particles) +
          projected_laws(model).size() * sizeof(ProjectedLaw) + (2 * particles + 1) * kNumber +
          capacity * (kConstraint + 2 * sizeof(Record) + 2 * kNumber) + sizeof(Progress) +
-         particles * kColumn + 2 * ends_of(model) * kNumber + 2 * kNumber +
+         particles * kColumn + 3 * ends_of(model) * kNumber + 2 * kNumber +
          at_least_one_of(model.rigid_bodies.size()) *
              (DeviceRigidBodies::kPoseBytes + 2 * kRigidMotion);
 }
@@ -274,7 +275,13 @@ void DeviceProjection::finish(const Model& model, const SolidParameters& p, Real
     sweep(step, true, s);
     program_.run("end_round", 1, progress_, counters);
   }
-  program_.run("record_contacts", at_least_one_of(count_), dt, progress_, contacts_, records_);
+  program_.fill_with_zeros(is_hit_, (free_ + bodies_) * kNumber);
+  if (count_ > 0) {
+    program_.run("find_hits", count_, step_of(model, end, dt, true).slow, number_of(free_),
+                 progress_, contacts_, is_hit_);
+  }
+  program_.run("record_contacts", at_least_one_of(count_), dt, number_of(free_), progress_,
+               contacts_, is_hit_, records_);
 }
 
 }  // namespace vat

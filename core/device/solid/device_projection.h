@@ -115,7 +115,7 @@ class DeviceProjection {
   opencl::Buffer laws_, counts_, begins_, contacts_;
   opencl::Buffer records_, saved_records_, progress_;
   opencl::Buffer start_position_, start_poses_, motions_, predicted_motions_;
-  opencl::Buffer parents_, island_of_, island_begins_, members_;
+  opencl::Buffer parents_, island_of_, is_hit_, island_begins_, members_;
   std::vector<Record> read_records_;
   std::size_t saved_count_ = 0;
 };

@@ -42,6 +42,7 @@ typedef struct {
   double mobility;
   double approach;
   double parting;
+  double required;  // distance at the end of the step
   double push;
   double friction_impulse[3];
   double earlier[3];  // impulse at the start of a solve
@@ -468,6 +469,9 @@ kernel void set_contact_geometry(const Solids p, const ProjectionStep step,
     c->parting = -c->approach > step.slow ? -c->restitution * c->approach : 0;
     return;
   }
+  // See remaining_overlap() of core/contact/projection/projection.cpp.
+  const double overlap = fmax(0.0, c->threshold - distance);
+  c->required = c->threshold - 0.99 * fmin(overlap, 1e-6 * c->threshold);
   c->approach = product(slip_of(c, velocity, motions), normal);
   const int other = c->wall >= 0 ? c->wall : WALLS + c->ends[1].particle;
   const int found = find_record(records, state->recorded, c->ends[0].particle, other);
@@ -547,13 +551,31 @@ kernel void clear_round(global Projection* state) {
   state->unmet = 0;
 }
 
+int number_of_end(int free, global const ConstraintEnd* end) {
+  return end->rigid < 0 ? end->particle : free + end->rigid;
+}
+
 double size_of(double3 v) {
   return sqrt(product(v, v));
 }
 
+// Notes which free particles and rigid bodies had an impact.
+kernel void find_hits(const double slow, const int free, global const Projection* state,
+                      global const Constraint* contacts, global int* is_hit) {
+  const int n = get_global_id(0);
+  if (n >= state->count) return;
+  global const Constraint* c = contacts + n;
+  if (!c->is_present || -c->approach <= slow) return;
+  for (int k = 0; k < 2; ++k) {
+    global const ConstraintEnd* end = &c->ends[k];
+    if (end->inverse_mass > 0) atomic_or(is_hit + number_of_end(free, end), 1);
+  }
+}
+
 // Stores the forces of the contacts, see record().
-kernel void record_contacts(const double dt, global Projection* state,
-                            global const Constraint* contacts, global ContactRecord* records) {
+kernel void record_contacts(const double dt, const int free, global Projection* state,
+                            global const Constraint* contacts, global const int* is_hit,
+                            global ContactRecord* records) {
   const int n = get_global_id(0);
   if (n == 0) state->recorded = state->count;
   if (n >= state->count) return;
@@ -565,7 +587,12 @@ kernel void record_contacts(const double dt, global Projection* state,
   store_vector(finish, record->finish, 0);
   record->particle = c->ends[0].particle;
   record->other = c->wall >= 0 ? c->wall : WALLS + c->ends[1].particle;
-  record->is_steady = size_of(drift) <= 2 * size_of(vector_at(c->last_drift, 0)) &&
-                      size_of(finish) <= 2 * size_of(vector_at(c->last_finish, 0));
+  bool is_calm = true;
+  for (int k = 0; k < 2; ++k) {
+    global const ConstraintEnd* end = &c->ends[k];
+    if (end->inverse_mass > 0) is_calm &= !is_hit[number_of_end(free, end)];
+  }
+  record->is_steady = is_calm || (size_of(drift) <= 2 * size_of(vector_at(c->last_drift, 0)) &&
+                                  size_of(finish) <= 2 * size_of(vector_at(c->last_finish, 0)));
   record->is_present = c->is_present;
 }
