@@ -93,7 +93,7 @@ Status DeviceEngine::read(State& state) {
 
 Result<std::unique_ptr<StepEngine>> make_device_engine(const opencl::Device& device,
                                                        DeviceArithmetic arithmetic) {
-  std::string options = "-cl-std=CL1.2";
+  std::string options = "-cl-std=CL1.2 -DLANES=" + std::to_string(device.lanes);
   if (arithmetic == DeviceArithmetic::exact) {
     if (!device.is_exact) {
       return Error{"not_available", "/device",

@@ -5,8 +5,15 @@
 #pragma OPENCL FP_CONTRACT OFF
 #endif
 
-// Work-items of a group.
+// Particles of a group.
 #define GROUP 256
+
+// Work-items of some kernels compute LANES particles at once, in vectors. Each particle has the same
+// operations in the same order as without vectors, so that the bits do not depend on LANES.
+#ifndef LANES
+#define LANES 1
+#endif
+#define ITEMS (GROUP / LANES)
 
 // Counters, see Counters.
 enum { kFault = 0, kStops = 1 };
@@ -69,6 +76,23 @@ double4 sum_group(local double4* sums, double4 own) {
 
 void write_partial(local double4* sums, double4 own, global double4* partial) {
   const double4 total = sum_group(sums, own);
+  if (get_local_id(0) == 0) partial[get_group_id(0)] = total;
+}
+
+// The result of sum_group() for the values of a group that are in `sums`.
+double4 sum_lanes(local double4* sums) {
+  barrier(CLK_LOCAL_MEM_FENCE);
+  for (int width = GROUP / 2; width > 0; width /= 2) {
+    for (int t = get_local_id(0); t < width; t += ITEMS) {
+      sums[t] = combined(sums[t], sums[t + width]);
+    }
+    barrier(CLK_LOCAL_MEM_FENCE);
+  }
+  return sums[0];
+}
+
+void write_partial_of_lanes(local double4* sums, global double4* partial) {
+  const double4 total = sum_lanes(sums);
   if (get_local_id(0) == 0) partial[get_group_id(0)] = total;
 }
 

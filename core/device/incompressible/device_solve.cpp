@@ -48,7 +48,7 @@ void set_limits(const SolveLimits& limits, SolveParameters& p) {
 
 DeviceSolve::DeviceSolve(Program& program, const Model& model)
     : squares(program, model.particle_count * sizeof(float)),
-      solve_motion(program, model.particle_count * sizeof(Float4)),
+      solve_motion(program, slots_in_lanes(model.particle_count) * sizeof(Float4)),
       whole(program, model.particle_count * sizeof(Float4)),
       x(program, model.particle_count * sizeof(double)),
       excess(program, model.particle_count * sizeof(double)),
@@ -61,12 +61,12 @@ DeviceSolve::DeviceSolve(Program& program, const Model& model)
       groups_(groups_of(slots_)),
       direction_(program, slots_ * sizeof(double)),
       product_(program, slots_ * sizeof(double)),
-      charge_(program, slots_ * sizeof(float)) {}
+      charge_(program, slots_in_lanes(slots_) * sizeof(Float4)) {}
 
 std::size_t DeviceSolve::bytes_for(const Model& model) {
   const std::size_t n = model.particle_count;
-  return n * (5 * sizeof(double) + 2 * sizeof(Float4) + 2 * sizeof(float)) + bytes_of_partial(n) +
-         sizeof(SolveProgress);
+  return n * (5 * sizeof(double) + sizeof(Float4) + sizeof(float)) +
+         slots_in_lanes(n) * 2 * sizeof(Float4) + bytes_of_partial(n) + sizeof(SolveProgress);
 }
 
 void DeviceSolve::iterate(const LiquidParameters& p, const SolveParameters& solve,
@@ -77,11 +77,12 @@ void DeviceSolve::iterate(const LiquidParameters& p, const SolveParameters& solv
                  direction_, charge_, partial);
     program_.run("find_slope", kOne, groups_, is_restart, partial, progress);
   }
-  program_.run("accelerate", slots_, p, solve, progress, s.cells.begins, s.sorted_place,
-               s.neighbour_counts, s.neighbours, charge_, solve_motion, partial);
+  program_.run_in_lanes("accelerate", slots_, p, solve, progress, s.cells.begins, s.sorted_place,
+                        s.neighbour_counts, s.plain_counts, s.neighbours, charge_, solve_motion,
+                        partial);
   program_.run("find_length", kOne, solve, groups_, partial, progress);
-  program_.run("compress", slots_, p, solve, progress, s.cells.begins, s.sorted_place,
-               s.neighbour_counts, s.neighbours, solve_motion, product_);
+  program_.run_in_lanes("compress", slots_, p, solve, progress, s.cells.begins, s.sorted_place,
+                        s.neighbour_counts, s.plain_counts, s.neighbours, solve_motion, product_);
   program_.run("take_step", slots_, solve, progress, s.sorted_place, squares, direction_, product_,
                solve_motion, x, excess, gradient, whole, partial);
   program_.run("end_iteration", kOne, solve, groups_, std::int32_t{0}, partial, progress);

@@ -145,9 +145,9 @@ void IncompressibleMethod::find_density_after(const char* name, const LiquidPara
                                               const Arguments&... own) {
   DeviceParticles& s = particles_;
   s.sort_after(name, p, own...);
-  program_.run("find_density", s.count(), p, s.cells.begins, s.order, now_.pressure, s.sorted_place,
-               s.sorted_motion, s.neighbour_counts, s.neighbours, particles_.density,
-               solve_.squares, solve_.partial);
+  program_.run_in_lanes("find_density", s.count(), p, s.cells.begins, s.order, now_.pressure,
+                        s.sorted_place, s.columns, s.selected, s.sorted_motion, s.neighbour_counts,
+                        s.plain_counts, s.neighbours, s.density, solve_.squares, solve_.partial);
 }
 
 void IncompressibleMethod::find_density_at(Real time) {
@@ -159,8 +159,9 @@ void IncompressibleMethod::find_acceleration(const LiquidParameters& p,
                                              const Buffer& acceleration) {
   DeviceParticles& s = particles_;
   s.find_solid_pressure(p);
-  program_.run("find_acceleration", s.count(), p, s.cells.begins, s.order, s.sorted_place,
-               s.sorted_motion, s.neighbour_counts, s.neighbours, acceleration);
+  program_.run_in_lanes("find_acceleration", s.count(), p, s.cells.begins, s.order, s.sorted_place,
+                        s.sorted_motion, s.neighbour_counts, s.plain_counts, s.neighbours,
+                        acceleration);
 }
 
 void IncompressibleMethod::kick(const LiquidParameters& p, const SolveParameters& solve,
@@ -169,13 +170,14 @@ void IncompressibleMethod::kick(const LiquidParameters& p, const SolveParameters
   if (!viscous_) {
     LiquidParameters without = p;
     for (float& g : without.gravity) g = 0;
-    program_.run("kick", s.count(), without, solve, s.cells.begins, s.order, s.sorted_place,
-                 s.sorted_motion, s.neighbour_counts, s.neighbours, now_.motion.velocity,
-                 solve_.solve_motion);
+    program_.run_in_lanes("kick", s.count(), without, solve, s.cells.begins, s.order,
+                          s.sorted_place, s.sorted_motion, s.neighbour_counts, s.plain_counts,
+                          s.neighbours, now_.motion.velocity, solve_.solve_motion);
     return;
   }
-  program_.run("find_acceleration", s.count(), p, s.cells.begins, s.order, s.sorted_place,
-               s.sorted_motion, s.neighbour_counts, s.neighbours, viscous_->acceleration);
+  program_.run_in_lanes("find_acceleration", s.count(), p, s.cells.begins, s.order, s.sorted_place,
+                        s.sorted_motion, s.neighbour_counts, s.plain_counts, s.neighbours,
+                        viscous_->acceleration);
   report.iterations.damping +=
       viscous_->solve.solve(p, s, now_.motion.velocity, solve.dt, viscous_->acceleration);
   program_.run("kick_by_accelerations", s.count(), p, solve, s.order, s.sorted_place,
@@ -196,10 +198,10 @@ void IncompressibleMethod::project_velocities(const StepPart& step, AdvanceRepor
   }
   set_limits(velocity_limits(model_->scene.incompressible), solve);
   kick(p, solve, report);
-  program_.run("begin_projection", n, p, solve, s.cells.begins, s.order, s.sorted_place,
-               s.neighbour_counts, s.neighbours, solve_.solve_motion, particles_.density,
-               solve_.squares, now_.pressure, solve_.x, solve_.excess, solve_.gradient,
-               solve_.whole, solve_.partial);
+  program_.run_in_lanes("begin_projection", n, p, solve, s.cells.begins, s.order, s.sorted_place,
+                        s.neighbour_counts, s.plain_counts, s.neighbours, solve_.solve_motion,
+                        s.density, solve_.squares, now_.pressure, solve_.x, solve_.excess,
+                        solve_.gradient, solve_.whole, solve_.partial);
   report_.velocities = solve_.solve(p, solve, s, report_.velocities.iterations);
   program_.run("end_projection", n, solve, solve_.progress, s.order, particles_.density, solve_.x,
                solve_.whole, now_.pressure, now_.motion.velocity);

@@ -1,9 +1,6 @@
 // Solves over the particles of an incompressible liquid, for pressures times dt^2. The names are
 // those of core/liquid/incompressible/complementarity.h and pressure_response.h. All vectors are by
 // slot, with zeros for solids.
-//
-// For a liquid particle, a solid particle counts as a mirror image of it with twice the weight, see
-// pressure_response.h.
 
 typedef struct {
   double wall_velocity[3];
@@ -50,26 +47,6 @@ typedef struct {
   int is_last;
 } Progress;
 
-// D of the motions, divided by rate_factor.
-float rate_of(const Parameters* p, int slot, global const int* begins,
-              global const int4* sorted_place, global const int* counts, global const uint* lists,
-              global const float4* motions) {
-  const int4 own = sorted_place[slot];
-  const int n[3] = {own.x, own.y, own.z};
-  const float3 mine = motions[slot].xyz;
-  float sum = 0;
-  FOR_EACH_NEIGHBOUR(p, slot, n, begins, counts, lists, {
-    const int4 other = sorted_place[j];
-    const float3 x = way_from(p, code, n, other);
-    const float square = square_of(x);
-    if (!(square < 1)) continue;
-    const float3 v = mine - turned(p, code, motions[j].xyz);
-    const float weight = is_solid(other) ? 2 * weight_of(other) : weight_of(other);
-    sum += weight * kernel_slope(sqrt(square)) * (v.x * x.x + v.y * x.y + v.z * x.z);
-  })
-  return sum;
-}
-
 // The diagonal, or 0 for a particle without neighbours.
 double diagonal_of(const Solve* solve, float weight, float squares) {
   return solve->dt * solve->dt * solve->diagonal_factor * (double)weight * (double)squares;
@@ -103,40 +80,49 @@ double4 begin(const Solve* solve, int slot, double first, double excess, double 
 // The diagonal of a particle without neighbours.
 #define ALONE 1.0
 
-kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void begin_projection(
+kernel __attribute__((reqd_work_group_size(ITEMS, 1, 1))) void begin_projection(
     const Parameters p, const Solve solve, global const int* begins, global const int* order,
-    global const int4* sorted_place, global const int* counts, global const uint* lists,
-    global const float4* solve_motion, global const float* density, global const float* squares,
-    global const double* pressure, global double* x, global double* excess,
-    global double* gradient, global float4* whole, global double4* partial) {
+    global const int4* sorted_place, global const int* counts, global const int* plain_counts,
+    global const uint* lists, global const float4* solve_motion,
+    global const float* density, global const float* squares, global const double* pressure,
+    global double* x, global double* excess, global double* gradient, global float4* whole,
+    global double4* partial) {
   local double4 sums[GROUP];
-  const int slot = get_global_id(0);
-  double4 own = 0;
-  if (slot < solve.slots) {
-    double scale = 0;
-    double first = 0;
-    double e = 0;
-    double diagonal = ALONE;
-    if (!is_solid(sorted_place[slot])) {
-      const float rate = rate_of(&p, slot, begins, sorted_place, counts, lists, solve_motion);
-      const float weight = weight_of(sorted_place[slot]);
-      scale = solve.volume * (double)weight;
-      const double s = density[slot];
-      const double over = s - 1 - solve.left_alone;
-      const double removed = over < 0 ? 0 : over > solve.removal ? solve.removal : over;
-      const double room = s < 1 ? solve.closing * (1 - s) : -removed;
-      e = scale * (solve.dt * solve.rate_factor * (double)rate - room);
-      const double bound = diagonal_of(&solve, weight, squares[slot]);
-      if (bound > 0) {
-        diagonal = bound;
-        first = pressure[order[slot]] / (s * s);
-      } else if (e > 0) {
-        e = 0;
-      }
-    }
-    own = begin(&solve, slot, first, e, diagonal, scale, x, excess, gradient, whole);
+  const int start = LANES * get_global_id(0);
+  float rates[LANES];
+  if (start < solve.slots) {
+    find_rates(&p, start, begins, sorted_place, counts, plain_counts, lists, solve_motion,
+               rates);
   }
-  write_partial(sums, own, partial);
+  for (int lane = 0; lane < LANES; ++lane) {
+    const int slot = start + lane;
+    double4 own = 0;
+    if (slot < solve.slots) {
+      double scale = 0;
+      double first = 0;
+      double e = 0;
+      double diagonal = ALONE;
+      if (!is_solid(sorted_place[slot])) {
+        const float weight = weight_of(sorted_place[slot]);
+        scale = solve.volume * (double)weight;
+        const double s = density[slot];
+        const double over = s - 1 - solve.left_alone;
+        const double removed = over < 0 ? 0 : over > solve.removal ? solve.removal : over;
+        const double room = s < 1 ? solve.closing * (1 - s) : -removed;
+        e = scale * (solve.dt * solve.rate_factor * (double)rates[lane] - room);
+        const double bound = diagonal_of(&solve, weight, squares[slot]);
+        if (bound > 0) {
+          diagonal = bound;
+          first = pressure[order[slot]] / (s * s);
+        } else if (e > 0) {
+          e = 0;
+        }
+      }
+      own = begin(&solve, slot, first, e, diagonal, scale, x, excess, gradient, whole);
+    }
+    sums[LANES * get_local_id(0) + lane] = own;
+  }
+  write_partial_of_lanes(sums, partial);
 }
 
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void begin_shift(
@@ -168,7 +154,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void begin_shift(
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void follow(
     const int slots, const int is_restart, global const Progress* progress,
     global const double* x, global const double* excess, global const double* gradient,
-    global double* direction, global float* charge, global double4* partial) {
+    global double* direction, global Charge* charge, global double4* partial) {
   local double4 sums[GROUP];
   if (!progress->is_open || (is_restart && !progress->restarts)) return;
   const int slot = get_global_id(0);
@@ -179,7 +165,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void follow(
     if (share > 0) d += share * direction[slot];
     d = greater(d, -x[slot] / progress->longest_step);
     direction[slot] = d;
-    charge[slot] = (float)d;
+    charge[slot] = CHARGE((float)d);
     own.x = d * excess[slot];
   }
   write_partial(sums, own, partial);
@@ -198,64 +184,59 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_slope(
   progress->restarts = !is_restart && !(total.x > 0) && progress->share > 0;
 }
 
-// The accelerations by the charges, divided by -acceleration_factor.
-float3 push_of(const Parameters* p, int slot, global const int* begins,
-               global const int4* sorted_place, global const int* counts,
-               global const uint* lists, global const float* charge) {
-  const int4 own = sorted_place[slot];
-  const int n[3] = {own.x, own.y, own.z};
-  const float mine = charge[slot];
-  float3 sum = 0;
-  FOR_EACH_NEIGHBOUR(p, slot, n, begins, counts, lists, {
-    const int4 other = sorted_place[j];
-    const float3 x = way_from(p, code, n, other);
-    const float square = square_of(x);
-    if (!(square < 1)) continue;
-    const float both = is_solid(other) ? 2 * mine : mine + charge[j];
-    sum += both * (weight_of(other) * kernel_slope(sqrt(square))) * x;
-  })
-  return sum;
-}
-
 // Sets the motion to the accelerations by the charges. Sums the curvature along the direction, see
 // PressureResponse::energy().
-kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void accelerate(
+kernel __attribute__((reqd_work_group_size(ITEMS, 1, 1))) void accelerate(
     const Parameters p, const Solve solve, global const Progress* progress,
     global const int* begins, global const int4* sorted_place, global const int* counts,
-    global const uint* lists, global const float* charge, global float4* solve_motion,
-    global double4* partial) {
+    global const int* plain_counts, global const uint* lists,
+    global const Charge* charge, global float4* solve_motion, global double4* partial) {
   local double4 sums[GROUP];
   if (!progress->is_open) return;
-  const int slot = get_global_id(0);
-  double4 own = 0;
-  if (slot < solve.slots) {
-    float3 a = 0;
-    if (!is_solid(sorted_place[slot])) {
-      a = -(float)solve.acceleration_factor *
-          push_of(&p, slot, begins, sorted_place, counts, lists, charge);
-      const double x = a.x;
-      const double y = a.y;
-      const double z = a.z;
-      const double inertia = solve.volume * (double)weight_of(sorted_place[slot]) *
-                             solve.rate_factor / solve.acceleration_factor;
-      own.x = solve.dt * solve.dt * inertia * (x * x + y * y + z * z);
-    }
-    solve_motion[slot] = (float4)(a, 0);
+  const int first = LANES * get_global_id(0);
+  float3 pushes[LANES];
+  if (first < solve.slots) {
+    find_pushes(&p, first, begins, sorted_place, counts, plain_counts, lists, charge,
+                pushes);
   }
-  write_partial(sums, own, partial);
+  for (int lane = 0; lane < LANES; ++lane) {
+    const int slot = first + lane;
+    double4 own = 0;
+    if (slot < solve.slots) {
+      float3 a = 0;
+      if (!is_solid(sorted_place[slot])) {
+        a = -(float)solve.acceleration_factor * pushes[lane];
+        const double x = a.x;
+        const double y = a.y;
+        const double z = a.z;
+        const double inertia = solve.volume * (double)weight_of(sorted_place[slot]) *
+                               solve.rate_factor / solve.acceleration_factor;
+        own.x = solve.dt * solve.dt * inertia * (x * x + y * y + z * z);
+      }
+      solve_motion[slot] = (float4)(a, 0);
+    }
+    sums[LANES * get_local_id(0) + lane] = own;
+  }
+  write_partial_of_lanes(sums, partial);
 }
 
 // Computes the product of the matrix and the direction from the accelerations.
 kernel void compress(const Parameters p, const Solve solve, global const Progress* progress,
                      global const int* begins, global const int4* sorted_place,
-                     global const int* counts, global const uint* lists,
+                     global const int* counts, global const int* plain_counts,
+                     global const uint* lists,
                      global const float4* solve_motion, global double* product) {
-  const int slot = get_global_id(0);
-  if (slot >= solve.slots || !progress->is_open || progress->is_last) return;
-  if (is_solid(sorted_place[slot])) return;
-  const float rate = rate_of(&p, slot, begins, sorted_place, counts, lists, solve_motion);
-  const double scale = solve.volume * (double)weight_of(sorted_place[slot]);
-  product[slot] = -solve.dt * solve.dt * solve.rate_factor * scale * (double)rate;
+  const int first = LANES * get_global_id(0);
+  if (first >= solve.slots || !progress->is_open || progress->is_last) return;
+  float rates[LANES];
+  find_rates(&p, first, begins, sorted_place, counts, plain_counts, lists,
+             solve_motion, rates);
+  for (int lane = 0; lane < LANES && first + lane < solve.slots; ++lane) {
+    const int slot = first + lane;
+    if (is_solid(sorted_place[slot])) continue;
+    const double scale = solve.volume * (double)weight_of(sorted_place[slot]);
+    product[slot] = -solve.dt * solve.dt * solve.rate_factor * scale * (double)rates[lane];
+  }
 }
 
 // Chooses the length of the step to the minimum along the direction, and decides whether the

@@ -1,5 +1,6 @@
 #include "core/device/liquid/device_particles.h"
 
+#include "core/liquid/pairs/pair_sums.h"
 #include "core/support/check.h"
 
 namespace vat {
@@ -7,7 +8,7 @@ namespace {
 
 using opencl::Program;
 
-// Constants of pairs.cl.
+// Constants of neighbours.cl.
 constexpr std::size_t kListLength = 64;
 constexpr std::size_t kListGroup = 32;
 
@@ -17,16 +18,29 @@ std::size_t list_entries(std::size_t particles) {
   return (particles + kListGroup - 1) / kListGroup * kListGroup * kListLength;
 }
 
+std::size_t column_numbers(std::size_t particles) {
+  constexpr std::size_t kColumnEnd = 16;  // COLUMN_END of particles.cl
+  return 3 * (particles + kColumnEnd);
+}
+
 }  // namespace
+
+std::size_t slots_in_lanes(std::size_t particles) {
+  constexpr std::size_t kLanes = opencl::kMostLanes;
+  return (particles + kLanes - 1) / kLanes * kLanes;
+}
 
 DeviceParticles::DeviceParticles(Program& program, const Model& model,
                                  const LiquidGeometry& geometry, std::optional<MovingSolids> moving)
     : order(program, model.particle_count * kNumber),
-      sorted_place(program, model.particle_count * sizeof(Float4)),
-      sorted_motion(program, model.particle_count * sizeof(Float4)),
+      sorted_place(program, slots_in_lanes(model.particle_count) * sizeof(Float4)),
+      sorted_motion(program, slots_in_lanes(model.particle_count) * sizeof(Float4)),
       density(program, model.particle_count * sizeof(float)),
-      neighbour_counts(program, model.particle_count * kNumber),
+      neighbour_counts(program, slots_in_lanes(model.particle_count) * kNumber),
       neighbours(program, list_entries(model.particle_count) * kNumber),
+      columns(program, column_numbers(model.particle_count) * kNumber),
+      plain_counts(program, slots_in_lanes(model.particle_count) * kNumber),
+      selected(program, sizeof kSelectedLanes),
       cells(program, model.particle_count, geometry.cell_count()),
       counters(program),
       program_(program),
@@ -46,13 +60,17 @@ DeviceParticles::DeviceParticles(Program& program, const Model& model,
     solid_position_ = opencl::Buffer(program, (count_ - liquid_count_) * sizeof(Vec3));
   }
   program_.write(weight_, std::span<const float>(weights));
+  program_.write(selected, std::span<const std::array<std::uint8_t, 8>>(kSelectedLanes));
 }
 
 std::size_t DeviceParticles::bytes_for(const Model& model, const LiquidGeometry& geometry,
                                        bool solids_move) {
   const std::size_t at_rest = solids_move ? 0 : model.particle_count - model.liquid_count;
-  return model.particle_count * (4 * sizeof(Float4) + 4 * kNumber) + at_rest * sizeof(Vec3) +
-         list_entries(model.particle_count) * kNumber +
+  const std::size_t slots = slots_in_lanes(model.particle_count);
+  return model.particle_count * (2 * sizeof(Float4) + 3 * kNumber) +
+         slots * (2 * sizeof(Float4) + 2 * kNumber) + at_rest * sizeof(Vec3) +
+         (list_entries(model.particle_count) + column_numbers(model.particle_count)) * kNumber +
+         sizeof kSelectedLanes +
          DeviceCells::bytes_for(model.particle_count, geometry.cell_count());
 }
 
@@ -71,7 +89,7 @@ void DeviceParticles::enter_solids(const LiquidParameters& p) {
 void DeviceParticles::sort() {
   cells.sort();
   program_.run("collect", count_, static_cast<std::int32_t>(count_), cells.cell_of, cells.begins,
-               cells.unsorted, place_, motion_, order, sorted_place, sorted_motion);
+               cells.unsorted, place_, motion_, order, sorted_place, sorted_motion, columns);
 }
 
 void DeviceParticles::write_solids(const Configuration& from) {

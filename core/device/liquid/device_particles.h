@@ -25,6 +25,9 @@ struct MovingSolids {
   const opencl::Buffer& velocity;
 };
 
+/// Returns the slots of buffers that the kernels of lanes.cl read or write in vectors.
+std::size_t slots_in_lanes(std::size_t particles);
+
 /// The particles of a liquid and of the solids in it, on a device. They are in the order of
 /// their cells, with lists of their neighbours. The functions throw opencl::DeviceFailure.
 class DeviceParticles {
@@ -67,6 +70,11 @@ class DeviceParticles {
   opencl::Buffer density;  ///< relative to the density at rest
   opencl::Buffer neighbour_counts;
   opencl::Buffer neighbours;
+
+  // Only on devices with several lanes, see lanes.cl.
+  opencl::Buffer columns;       ///< of sorted_place
+  opencl::Buffer plain_counts;  ///< neighbours that are no images
+  opencl::Buffer selected;      ///< kSelectedLanes
   DeviceCells cells;
   DeviceCounters counters;
 

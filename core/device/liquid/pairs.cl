@@ -1,180 +1,4 @@
-// Pairs of particles: neighbours, their lists, and forces. A wall is a mirror, and the sides of a periodic
-// axis shift by its period: the images near a particle are the particles near its own images. See core/liquid/tait/weakly_compressible.h for the
-// method.
-
-// The kernel wendland_c2, see core/kernels/smoothing_kernel.h.
-float kernel_value(float q) {
-  const float rest = 1 - q;
-  const float rest2 = rest * rest;
-  return rest2 * rest2 * (4 * q + 1);
-}
-float kernel_slope(float q) {
-  const float rest = 1 - q;
-  return rest * rest * rest;
-}
-
-// A mirror: for each axis 0, or 1 for the lower wall, or 2 for the upper wall. Along a periodic axis,
-// 1 and 2 are shifts across these sides.
-typedef struct {
-  int axes[3];
-} Mirror;
-
-// Whether a mirror reverses the direction of an axis.
-bool reverses(const Parameters* p, const Mirror* m, int axis) {
-  return m->axes[axis] > 0 && p->periods[axis] == 0;
-}
-
-bool is_shift(const Parameters* p, const Mirror* m) {
-  return !reverses(p, m, 0) && !reverses(p, m, 1) && !reverses(p, m, 2);
-}
-
-int reflected(const Parameters* p, const Mirror* m, int place, int axis) {
-  if (m->axes[axis] == 0) return place;
-  const int period = p->periods[axis];
-  if (period > 0) return m->axes[axis] == 1 ? place + period : place - period;
-  return (m->axes[axis] == 1 ? p->twice_low[axis] : p->twice_high[axis]) - place;
-}
-
-// Bit 2 k + 1 of the result: the lower side across axis k is within a support radius. Bit 2 k + 2:
-// the upper side.
-int sides_near(const Parameters* p, const int* n) {
-  const int twice_reach = 2 * p->support;
-  int near = 0;
-  for (int k = 0; k < 3; ++k) {
-    if (((p->sides >> (2 * k)) & 1) && 2 * n[k] - p->twice_low[k] < twice_reach) near |= 2 << (2 * k);
-    if (((p->sides >> (2 * k + 1)) & 1) && p->twice_high[k] - 2 * n[k] < twice_reach) {
-      near |= 4 << (2 * k);
-    }
-  }
-  return near;
-}
-
-// Runs BODY for each mirror `m` whose images may be near the position n: also for no reflection.
-#define FOR_EACH_MIRROR(p, n, BODY)                                            \
-  {                                                                            \
-    const int near = sides_near(p, n);                                         \
-    Mirror m;                                                                  \
-    for (m.axes[0] = 0; m.axes[0] < 3; ++m.axes[0]) {                          \
-      if (m.axes[0] != 0 && !((near >> m.axes[0]) & 1)) continue;              \
-      for (m.axes[1] = 0; m.axes[1] < 3; ++m.axes[1]) {                        \
-        if (m.axes[1] != 0 && !((near >> (2 + m.axes[1])) & 1)) continue;      \
-        for (m.axes[2] = 0; m.axes[2] < 3; ++m.axes[2]) {                      \
-          if (m.axes[2] != 0 && !((near >> (4 + m.axes[2])) & 1)) continue;    \
-          BODY                                                                 \
-        }                                                                      \
-      }                                                                        \
-    }                                                                          \
-  }
-
-// Runs BODY for each row of cells near the position `at`, with the slots [begin, end).
-#define FOR_EACH_ROW(p, at, begins, BODY)                                      \
-  {                                                                            \
-    int low[3];                                                                \
-    int high[3];                                                               \
-    for (int k = 0; k < 3; ++k) {                                              \
-      const int c = at[k] >> (p)->cell_bits;                                   \
-      low[k] = clamp(c - (p)->reach, 0, (p)->cells[k] - 1);                             \
-      high[k] = clamp(c + (p)->reach, 0, (p)->cells[k] - 1);                            \
-    }                                                                          \
-    FOR_EACH_ROW_IN(p, low, high, begins, BODY)                                \
-  }
-
-// The part of the relative density that a particle and its own images have in excess of 1.
-float own_excess(const Parameters* p, const int* n, float weight) {
-  float own = 1;
-  FOR_EACH_MIRROR(p, n, {
-    if (m.axes[0] + m.axes[1] + m.axes[2] == 0) continue;
-    float square = 0;
-    for (int k = 0; k < 3; ++k) {
-      const float way = (float)(n[k] - reflected(p, &m, n[k], k)) * p->in_supports;
-      square += way * way;
-    }
-    if (square < 1) own += kernel_value(sqrt(square));
-  })
-  return max(0.0f, weight * own - 1);
-}
-
-// Lists of neighbours: entry k of slot s is entry_of(s, k). An entry is the slot of the neighbour
-// and, in the bits from MIRROR_BITS on, the axes of the mirror. A list with more than LIST_LENGTH
-// neighbours is incomplete.
-#define LIST_LENGTH 64
-#define LIST_GROUP 32
-#define MIRROR_BITS 26
-#define SLOT_MASK ((1u << MIRROR_BITS) - 1)
-
-int entry_of(int slot, int k) {
-  return ((slot / LIST_GROUP) * LIST_LENGTH + k) * LIST_GROUP + slot % LIST_GROUP;
-}
-
-uint code_of(const Mirror* m) {
-  return (uint)(m->axes[0] + 4 * m->axes[1] + 16 * m->axes[2]) << MIRROR_BITS;
-}
-
-Mirror mirror_of(uint code) {
-  Mirror m;
-  for (int k = 0; k < 3; ++k) m.axes[k] = (code >> (MIRROR_BITS + 2 * k)) & 3;
-  return m;
-}
-
-// Runs BODY for each source `j` in the cells near a particle at n. `code` is the code of the mirror
-// of the image, or 0. `at` is the position n, or its reflection in this mirror.
-#define FOR_EACH_CANDIDATE(p, n, begins, BODY)                                 \
-  FOR_EACH_MIRROR(p, n, {                                                      \
-    int at[3];                                                                 \
-    for (int k = 0; k < 3; ++k) at[k] = reflected(p, &m, n[k], k);             \
-    const uint code = code_of(&m);                                             \
-    FOR_EACH_ROW(p, at, begins, {                                              \
-      for (int j = begin; j < end; ++j) BODY                                   \
-    })                                                                         \
-  })
-
-// Runs BODY for each source `j` that may be near the particle in `slot` at n. `code` is the code of
-// the mirror of the image, or 0.
-#define FOR_EACH_NEIGHBOUR(p, slot, n, begins, counts, lists, BODY)            \
-  if (counts[slot] <= LIST_LENGTH) {                                           \
-    const int length = counts[slot];                                           \
-    for (int entry = 0; entry < length; ++entry) {                             \
-      const uint listed = lists[entry_of(slot, entry)];                        \
-      const int j = listed & SLOT_MASK;                                        \
-      const uint code = listed & ~SLOT_MASK;                                   \
-      BODY                                                                     \
-    }                                                                          \
-  } else {                                                                     \
-    FOR_EACH_CANDIDATE(p, n, begins, BODY)                                     \
-  }
-
-// Adds a source to a list.
-void list(global uint* lists, int slot, int* count, int source, uint code) {
-  if (*count < LIST_LENGTH) lists[entry_of(slot, *count)] = source | code;
-  ++*count;
-}
-
-// The vector from a source to a target, or to its image at `at`, in support radii.
-float3 way_to(const Parameters* p, const int* at, int4 source) {
-  return (float3)((float)(at[0] - source.x), (float)(at[1] - source.y), (float)(at[2] - source.z)) *
-         p->in_supports;
-}
-
-// The direction x from the image in a mirror, seen from the particle that is not reflected.
-float3 turned(const Parameters* p, uint code, float3 x) {
-  if (code == 0) return x;
-  const Mirror m = mirror_of(code);
-  return (float3)(reverses(p, &m, 0) ? -x.x : x.x, reverses(p, &m, 1) ? -x.y : x.y,
-                  reverses(p, &m, 2) ? -x.z : x.z);
-}
-
-// The vector from a source, or from its image, to a target at n, in support radii.
-float3 way_from(const Parameters* p, uint code, const int* n, int4 source) {
-  if (code == 0) return way_to(p, n, source);
-  const Mirror m = mirror_of(code);
-  int at[3];
-  for (int k = 0; k < 3; ++k) at[k] = reflected(p, &m, n[k], k);
-  return turned(p, code, way_to(p, at, source));
-}
-
-float square_of(float3 x) {
-  return x.x * x.x + x.y * x.y + x.z * x.z;
-}
+// Forces of pairs of particles; see core/liquid/tait/weakly_compressible.h for the method.
 
 // The pressure of the image of a particle at `place` includes the hydrostatic pressure difference;
 // see ImagePressure.
@@ -193,6 +17,15 @@ float image_pressure(const Parameters* p, const Mirror* m, int4 place, float pre
 // Avoids a division by 0 in viscous forces: (h/2)^2 / 100 in units of the support radius h.
 #define SOFTENING (0.01f / 4)
 
+// The force of a pair without its factor x. `approach` is the product of x and the relative velocity.
+#define DEFINE_SHARE_OF_FORCE(Reals, share_of_force, kernel_slope)                              \
+  Reals share_of_force(const Parameters* p, Reals approach, Reals square, Reals pressures,      \
+                       Reals weight) {                                                         \
+    const Reals force = p->viscosity * approach / (square + SOFTENING) - pressures;            \
+    return force * (weight * kernel_slope(sqrt(square)));                                      \
+  }
+DEFINE_SHARE_OF_FORCE(float, share_of_force, kernel_slope)
+
 // Adds the force of a source on a target.
 void add_force(const Parameters* p, const int* n, float4 mine, int4 source, float4 its,
                float* sum) {
@@ -200,8 +33,7 @@ void add_force(const Parameters* p, const int* n, float4 mine, int4 source, floa
   const float square = square_of(x);
   if (!(square < 1)) return;
   const float approach = (mine.x - its.x) * x.x + (mine.y - its.y) * x.y + (mine.z - its.z) * x.z;
-  const float force = p->viscosity * approach / (square + SOFTENING) - (mine.w + its.w);
-  const float share = force * (weight_of(source) * kernel_slope(sqrt(square)));
+  const float share = share_of_force(p, approach, square, mine.w + its.w, weight_of(source));
   sum[0] += share * x.x;
   sum[1] += share * x.y;
   sum[2] += share * x.z;
@@ -274,7 +106,18 @@ float field_at(const Parameters* p, int n, int axis) {
   return (float)(p->field_strength * (p->field_center[axis] - x));
 }
 
-// The acceleration of the particle in `slot` by pressure, viscosity, gravity and settling.
+// The acceleration of a particle by the sum over pairs, gravity, central field and settling.
+float3 acceleration_by(const Parameters* p, const int* n, float4 mine, const float* sum) {
+  const float v[3] = {mine.x, mine.y, mine.z};
+  float a[3];
+  for (int k = 0; k < 3; ++k) {
+    a[k] = p->gravity[k] + p->slope_factor * sum[k] - p->drag * (v[k] - p->still[k]);
+    if (p->field_strength > 0) a[k] += field_at(p, n[k], k);
+  }
+  return (float3)(a[0], a[1], a[2]);
+}
+
+// The acceleration of the particle in `slot`, see acceleration_by().
 float3 acceleration_of(const Parameters* p, int slot, global const int* begins,
                        global const int4* sorted_place, global const float4* sorted_motion,
                        global const int* counts, global const uint* lists) {
@@ -285,14 +128,140 @@ float3 acceleration_of(const Parameters* p, int slot, global const int* begins,
   FOR_EACH_NEIGHBOUR(p, slot, n, begins, counts, lists, {
     add_force_of(p, code, n, 0, mine, sorted_place[j], sorted_motion[j], sum);
   })
-  const float v[3] = {mine.x, mine.y, mine.z};
-  float a[3];
-  for (int k = 0; k < 3; ++k) {
-    a[k] = p->gravity[k] + p->slope_factor * sum[k] - p->drag * (v[k] - p->still[k]);
-    if (p->field_strength > 0) a[k] += field_at(p, n[k], k);
-  }
-  return (float3)(a[0], a[1], a[2]);
+  return acceleration_by(p, n, mine, sum);
 }
+
+#if LANES > 1
+DEFINE_SHARE_OF_FORCE(float16, shares_of_force, kernel_slopes)
+
+// Sums over the pairs of LANES targets.
+typedef struct {
+  float16 x, y, z;
+} Sums;
+
+// The function image_pressure() for vectors.
+float16 image_pressures(const Parameters* p, const Mirrors* m, Columns places, float16 pressure) {
+  float16 more = 0;
+  for (int k = 0; k < 3; ++k) {
+    if (p->periods[k] > 0) continue;
+    const int16 n = as_int16(k == 0 ? places.x : k == 1 ? places.y : places.z);
+    more += p->fall[k] * (convert_float16(reflections(p, m, n, k) - n) * p->unit);
+  }
+  if (p->is_filled) return pressure + p->density * more;
+  const float16 images =
+      max(0.0f, pressure + pressure / (pressure + p->layer) * (p->density * more));
+  return select(images, pressure, pressure <= 0);
+}
+
+// The function mirrored_velocity() for vectors.
+Columns mirrored_velocities(const Parameters* p, const Mirrors* m, Columns motion) {
+  float16 v[3] = {motion.x, motion.y, motion.z};
+  for (int axis = 0; axis < 3; ++axis) {
+    const int16 is_reverse = reverse(p, m, axis);
+    const int16 is_low = m->axes[axis] == 1;
+    const int16 has_no_slip = select((int16)-((p->no_slip >> (2 * axis + 1)) & 1),
+                                     (int16)-((p->no_slip >> (2 * axis)) & 1), is_low);
+    for (int k = 0; k < 3; ++k) {
+      const float16 of_wall = select((float16)p->speeds_of_walls[6 * axis + 3 + k],
+                                     (float16)p->speeds_of_walls[6 * axis + k], is_low);
+      const int16 turns = k == axis ? is_reverse : is_reverse & has_no_slip;
+      v[k] = select(v[k], -(v[k] - of_wall) + of_wall, turns);
+    }
+  }
+  Columns turned = {v[0], v[1], v[2], motion.w};
+  return turned;
+}
+
+// The function is_viscous() for vectors.
+int16 are_viscous(const Parameters* p, const Mirrors* m) {
+  if (p->is_thick) return -1;
+  int16 any = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if ((p->no_slip >> (2 * axis)) & 1) any |= m->axes[axis] == 1;
+    if ((p->no_slip >> (2 * axis + 1)) & 1) any |= m->axes[axis] == 2;
+  }
+  return any;
+}
+
+// Adds the forces of sources, or of their images in `m`.
+void add_forces_of_images(const Parameters* p, const Mirrors* m, Columns own, Columns mine,
+                          Columns source, Columns its, int16 is_listed, Sums* sum) {
+  const Ways x = ways_of(p, images_of(p, m, own), source);
+  const int16 reverse_x = reverse(p, m, 0);
+  const int16 reverse_y = reverse(p, m, 1);
+  const int16 reverse_z = reverse(p, m, 2);
+  const int16 is_shift = ~(reverse_x | reverse_y | reverse_z);
+  const float16 weight = fabs(source.w) * kernel_slopes(sqrt(x.square));
+  const float16 approach =
+      (mine.x - its.x) * x.x + (mine.y - its.y) * x.y + (mine.z - its.z) * x.z;
+  const float16 share =
+      select(-(mine.w + image_pressures(p, m, source, its.w)) * weight,
+             shares_of_force(p, approach, x.square, mine.w + its.w, fabs(source.w)), is_shift);
+  sum->x += select(0.0f, share * select(x.x, -x.x, reverse_x), is_listed);
+  sum->y += select(0.0f, share * select(x.y, -x.y, reverse_y), is_listed);
+  sum->z += select(0.0f, share * select(x.z, -x.z, reverse_z), is_listed);
+  if (!p->is_thick && p->no_slip == 0) return;
+  const int16 drags = is_listed & are_viscous(p, m) & ~is_shift & (source.w >= 0);
+  const Columns v = mirrored_velocities(p, m, its);
+  const float16 drag = p->viscosity / (x.square + SOFTENING) * weight;
+  sum->x += select(0.0f, drag * (x.x * x.x) * (mine.x - v.x), drags);
+  sum->y += select(0.0f, drag * (x.y * x.y) * (mine.y - v.y), drags);
+  sum->z += select(0.0f, drag * (x.z * x.z) * (mine.z - v.z), drags);
+}
+
+// Finds the accelerations of the particles in LANES slots from `first` on, except of solids.
+void find_accelerations(const Parameters* p, int first, global const int* begins,
+                        global const int4* sorted_place, global const float4* sorted_motion,
+                        global const int* counts, global const int* plain_counts,
+                        global const uint* lists, float3* a) {
+  global const float4* places = (global const float4*)sorted_place;
+  const Columns own = columns_at(places, first);
+  const Columns mine = columns_at(sorted_motion, first);
+  Sums sum = {0, 0, 0};
+  FOR_EACH_LISTED(first, counts, plain_counts, lists, {
+    const Columns source = gather(places, offsets);
+    const Columns its = gather(sorted_motion, offsets);
+    if (has_images) {
+      const Mirrors m = mirrors_of(listed);
+      add_forces_of_images(p, &m, own, mine, source, its, is_listed, &sum);
+      continue;
+    }
+    const Ways x = ways_of(p, own, source);
+    const float16 approach =
+        (mine.x - its.x) * x.x + (mine.y - its.y) * x.y + (mine.z - its.z) * x.z;
+    const float16 share =
+        shares_of_force(p, approach, x.square, mine.w + its.w, fabs(source.w));
+    const float16 listed_share = select(0.0f, share, is_listed);
+    sum.x += listed_share * x.x;
+    sum.y += listed_share * x.y;
+    sum.z += listed_share * x.z;
+  })
+  float sums[3][LANES];
+  vstore16(sum.x, 0, sums[0]);
+  vstore16(sum.y, 0, sums[1]);
+  vstore16(sum.z, 0, sums[2]);
+  for (int lane = 0; lane < LANES && first + lane < p->count + p->solids; ++lane) {
+    const int slot = first + lane;
+    const int4 place = sorted_place[slot];
+    if (is_solid(place)) continue;
+    if (counts[slot] > LIST_LENGTH) {
+      a[lane] = acceleration_of(p, slot, begins, sorted_place, sorted_motion, counts, lists);
+      continue;
+    }
+    const int n[3] = {place.x, place.y, place.z};
+    const float total[3] = {sums[0][lane], sums[1][lane], sums[2][lane]};
+    a[lane] = acceleration_by(p, n, sorted_motion[slot], total);
+  }
+}
+#else
+void find_accelerations(const Parameters* p, int first, global const int* begins,
+                        global const int4* sorted_place, global const float4* sorted_motion,
+                        global const int* counts, global const int* plain_counts,
+                        global const uint* lists, float3* a) {
+  if (first >= p->count + p->solids || is_solid(sorted_place[first])) return;
+  a[0] = acceleration_of(p, first, begins, sorted_place, sorted_motion, counts, lists);
+}
+#endif
 
 // Extrapolates the pressure of the surrounding liquid to solids, see extrapolate_pressure().
 // p.gravity is the gravity on the liquid.
@@ -335,11 +304,17 @@ kernel void find_solid_pressure(const Parameters p, global const int* begins,
 kernel void find_acceleration(const Parameters p, global const int* begins,
                               global const int* order, global const int4* sorted_place,
                               global const float4* sorted_motion, global const int* counts,
-                              global const uint* lists, global float4* acceleration) {
-  const int slot = get_global_id(0);
-  if (slot >= p.count + p.solids || is_solid(sorted_place[slot])) return;
-  const float3 a = acceleration_of(&p, slot, begins, sorted_place, sorted_motion, counts, lists);
-  acceleration[order[slot]] = (float4)(a, 0);
+                              global const int* plain_counts, global const uint* lists,
+                              global float4* acceleration) {
+  const int first = LANES * get_global_id(0);
+  if (first >= p.count + p.solids) return;
+  float3 a[LANES];
+  find_accelerations(&p, first, begins, sorted_place, sorted_motion, counts, plain_counts, lists,
+                     a);
+  for (int lane = 0; lane < LANES && first + lane < p.count + p.solids; ++lane) {
+    const int slot = first + lane;
+    if (!is_solid(sorted_place[slot])) acceleration[order[slot]] = (float4)(a[lane], 0);
+  }
 }
 
 // Adds the forces of the liquid on the particles of solids, see add_tait_forces_on_solids(). `force`

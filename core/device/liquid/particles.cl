@@ -150,11 +150,14 @@ kernel void enter_moving_solids(const Parameters p, global const double* solid_p
   enter_cell(&p, p.count + b, x, w, weight, place, motion, cell_of, rank, cell_counts, status);
 }
 
+// Integers behind each column of positions, which vectors may read.
+#define COLUMN_END 16
+
 // Copies the particles in the order of cells.
 kernel void collect(const int count, global const int* cell_of, global const int* begins,
                     global const int* unsorted, global const int4* place,
                     global const float4* motion, global int* order, global int4* sorted_place,
-                    global float4* sorted_motion) {
+                    global float4* sorted_motion, global int* columns) {
   const int t = get_global_id(0);
   if (t >= count) return;
   const int i = unsorted[t];
@@ -162,4 +165,10 @@ kernel void collect(const int count, global const int* cell_of, global const int
   order[slot] = i;
   sorted_place[slot] = place[i];
   sorted_motion[slot] = motion[i];
+#if LANES > 1
+  const int4 own = place[i];
+  columns[slot] = own.x;
+  columns[slot + count + COLUMN_END] = own.y;
+  columns[slot + 2 * (count + COLUMN_END)] = own.z;
+#endif
 }

@@ -30,6 +30,8 @@ Device describe(const Api& api, cl_device_id id) {
   device.memory = number_of<cl_ulong>(api, id, CL_DEVICE_GLOBAL_MEM_SIZE);
   device.greatest_buffer = number_of<cl_ulong>(api, id, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
   device.compute_units = number_of<cl_uint>(api, id, CL_DEVICE_MAX_COMPUTE_UNITS);
+  const auto type = number_of<cl_device_type>(api, id, CL_DEVICE_TYPE);
+  device.lanes = (type & CL_DEVICE_TYPE_CPU) != 0 ? kMostLanes : 1;
   device.has_doubles = number_of<cl_device_fp_config>(api, id, CL_DEVICE_DOUBLE_FP_CONFIG) != 0;
   const auto single = number_of<cl_device_fp_config>(api, id, CL_DEVICE_SINGLE_FP_CONFIG);
   constexpr cl_device_fp_config kExact =

@@ -9,6 +9,9 @@
 
 namespace vat::opencl {
 
+/// Greatest number of lanes of a device.
+inline constexpr std::uint32_t kMostLanes = 16;
+
 struct Device {
   cl_device_id id = nullptr;
   std::string name;
@@ -16,6 +19,8 @@ struct Device {
   std::uint64_t memory = 0;           ///< [bytes]
   std::uint64_t greatest_buffer = 0;  ///< [bytes]
   std::uint32_t compute_units = 0;
+  /// Particles whose sums over pairs a work-item computes in vectors: 16 on CPUs, 1 on others.
+  std::uint32_t lanes = 1;
   bool has_doubles = false;  ///< arithmetic in double precision, which vat needs
   bool is_exact = false;     ///< can round divisions and square roots correctly
 };

@@ -62,11 +62,10 @@ void Program::set_bytes(const char* name, cl_kernel kernel, cl_uint index, std::
   check(api_.set_argument(kernel, index, size, bytes), name);
 }
 
-void Program::enqueue(const char* name, cl_kernel kernel, std::size_t count) {
-  VAT_CHECK(count > 0);
-  const std::size_t whole = (count + kGroup - 1) / kGroup * kGroup;
-  check(api_.enqueue_kernel(queue_, kernel, 1, nullptr, &whole, &kGroup, 0, nullptr, nullptr),
-        name);
+void Program::enqueue(const char* name, cl_kernel kernel, std::size_t items, std::size_t group) {
+  VAT_CHECK(items > 0);
+  const std::size_t whole = (items + group - 1) / group * group;
+  check(api_.enqueue_kernel(queue_, kernel, 1, nullptr, &whole, &group, 0, nullptr, nullptr), name);
 }
 
 void Program::write_bytes(const Buffer& buffer, const void* bytes, std::size_t size) {

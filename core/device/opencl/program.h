@@ -64,7 +64,16 @@ class Program {
     cl_kernel kernel = find_kernel(name);
     cl_uint index = 0;
     (set_argument(name, kernel, index++, arguments), ...);
-    enqueue(name, kernel, count);
+    enqueue(name, kernel, count, kGroup);
+  }
+  /// Runs the kernel `name` for `count` particles like run(). Each work-item computes
+  /// Device::lanes particles, so that a group also has kGroup particles.
+  template <class... Arguments>
+  void run_in_lanes(const char* name, std::size_t count, const Arguments&... arguments) {
+    cl_kernel kernel = find_kernel(name);
+    cl_uint index = 0;
+    (set_argument(name, kernel, index++, arguments), ...);
+    enqueue(name, kernel, (count + device().lanes - 1) / device().lanes, kGroup / device().lanes);
   }
   template <class T>
   void write(const Buffer& buffer, std::span<const T> values) {
@@ -97,7 +106,7 @@ class Program {
   }
   void set_bytes(const char* name, cl_kernel kernel, cl_uint index, std::size_t size,
                  const void* bytes);
-  void enqueue(const char* name, cl_kernel kernel, std::size_t count);
+  void enqueue(const char* name, cl_kernel kernel, std::size_t items, std::size_t group);
   void write_bytes(const Buffer& buffer, const void* bytes, std::size_t size);
   void read_bytes(const Buffer& buffer, void* bytes, std::size_t size);
   void check(cl_int code, const char* action) const;

@@ -38,7 +38,7 @@ DeviceViscosity::DeviceViscosity(Program& program, const Model& model)
       residual_(program, count_ * kColumn),
       direction_(program, count_ * kColumn),
       multiplied_(program, count_ * kColumn),
-      sorted_direction_(program, model.particle_count * sizeof(Float4)),
+      sorted_direction_(program, slots_in_lanes(model.particle_count) * sizeof(Float4)),
       partial_(program, bytes_of_partial(model.particle_count)),
       momenta_(program, bytes_of_partial(count_)),
       progress_(program, sizeof(DampingProgress)) {
@@ -50,8 +50,9 @@ DeviceViscosity::DeviceViscosity(Program& program, const Model& model)
 
 std::size_t DeviceViscosity::bytes_for(const Model& model) {
   return model.liquid_count * (2 * sizeof(double) + kColumns * kColumn) +
-         model.particle_count * sizeof(Float4) + bytes_of_partial(model.particle_count) +
-         bytes_of_partial(model.liquid_count) + sizeof(DampingProgress);
+         slots_in_lanes(model.particle_count) * sizeof(Float4) +
+         bytes_of_partial(model.particle_count) + bytes_of_partial(model.liquid_count) +
+         sizeof(DampingProgress);
 }
 
 std::uint32_t DeviceViscosity::solve(const LiquidParameters& p, const DeviceParticles& s,
@@ -70,9 +71,10 @@ std::uint32_t DeviceViscosity::solve(const LiquidParameters& p, const DevicePart
     program_.run("turn_damping", count_, damping, progress_, mobility_, residual_, direction_);
     program_.run("sort_direction", s.count(), linear, progress_, s.order, s.sorted_place,
                  direction_, sorted_direction_);
-    program_.run("multiply_viscosity", s.count(), linear, damping, progress_, s.cells.begins,
-                 s.order, s.sorted_place, sorted_direction_, s.neighbour_counts, s.neighbours,
-                 mass_, direction_, multiplied_, partial_);
+    program_.run_in_lanes("multiply_viscosity", s.count(), linear, damping, progress_,
+                          s.cells.begins, s.order, s.sorted_place, sorted_direction_,
+                          s.neighbour_counts, s.plain_counts, s.neighbours, mass_, direction_,
+                          multiplied_, partial_);
     program_.run("find_damping_length", kOne, groups_of(s.count()), partial_, progress_);
     program_.run("advance_damping", count_, damping, progress_, mass_, mobility_, velocity,
                  predicted_, direction_, multiplied_, change_, change_of_force_, residual_,

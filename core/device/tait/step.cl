@@ -63,11 +63,72 @@ float tait_pressure(float s) {
   return e * (1 + s * (1 + s * (1 + s * (1 + s * (1 + s * (1 + s)))))) / 7;
 }
 
-// Lists the neighbours of each particle. Sets the fourth component of sorted_motion to pressure /
-// s^2 for the relative density s of the liquid.
+// Sets the relative density s of a liquid particle from the sum over its neighbours. Sets the fourth
+// component of sorted_motion to pressure / s^2.
+void set_pressure(const Parameters* p, int slot, int4 own, float sum, global float4* sorted_motion,
+                  global float* density) {
+  if (is_solid(own)) return;
+  const int n[3] = {own.x, own.y, own.z};
+  if (sum > 1) sum -= own_excess(p, n, as_float(own.w));
+  density[slot] = sum;
+  const float square = sum * sum;
+  const float pressure = p->stiffness * tait_pressure(sum);
+  sorted_motion[slot].w =
+      (p->is_filled ? pressure : max(0 - p->tension * square, pressure)) / square;
+}
+
+// The part of the density by a source, seen from the position `at`.
+float density_by(const Parameters* p, const int* at, int4 source) {
+  const float square = square_of(way_to(p, at, source));
+  return square < 1 ? weight_of(source) * kernel_value(sqrt(square)) : 0;
+}
+
+#if LANES > 1
+// Finds the sums over the neighbours in the lists of LANES slots from `first` on.
+void find_densities(const Parameters* p, int first, global const int* begins,
+                    global const int4* sorted_place, global const int* counts,
+                    global const int* plain_counts, global const uint* lists, float* sums) {
+  global const float4* places = (global const float4*)sorted_place;
+  const Columns own = columns_at(places, first);
+  float16 sum = 0;
+  FOR_EACH_LISTED(first, counts, plain_counts, lists, {
+    const Columns source = gather(places, offsets);
+    const Ways x = ways_from(p, listed, has_images, own, source);
+    sum += select(0.0f, fabs(source.w) * kernel_values(sqrt(x.square)), is_listed);
+  })
+  vstore16(sum, 0, sums);
+}
+
+// Lists the neighbours of each particle, and finds its density and pressure.
 kernel void find_pressure(const Parameters p, global const int* begins,
-                          global const int4* sorted_place, global float4* sorted_motion,
-                          global float* density, global int* counts, global uint* lists) {
+                          global const int4* sorted_place, global const int* columns,
+                          global const uchar* selected, global float4* sorted_motion,
+                          global float* density, global int* counts, global int* plain_counts,
+                          global uint* lists) {
+  const int first = LANES * get_global_id(0);
+  const int end = p.count + p.solids;
+  if (first >= end) return;
+  list_neighbours(&p, first, begins, sorted_place, columns, selected, counts, plain_counts, lists);
+  float sums[LANES];
+  find_densities(&p, first, begins, sorted_place, counts, plain_counts, lists, sums);
+  for (int lane = 0; lane < LANES && first + lane < end; ++lane) {
+    const int slot = first + lane;
+    const int4 own = sorted_place[slot];
+    const int n[3] = {own.x, own.y, own.z};
+    float sum = sums[lane];
+    if (counts[slot] > LIST_LENGTH) {
+      sum = 0;
+      FOR_EACH_CANDIDATE(&p, n, begins, { sum += density_by(&p, at, sorted_place[j]); })
+    }
+    set_pressure(&p, slot, own, sum, sorted_motion, density);
+  }
+}
+#else
+kernel void find_pressure(const Parameters p, global const int* begins,
+                          global const int4* sorted_place, global const int* columns,
+                          global const uchar* selected, global float4* sorted_motion,
+                          global float* density, global int* counts, global int* plain_counts,
+                          global uint* lists) {
   const int slot = get_global_id(0);
   if (slot >= p.count + p.solids) return;
   const int4 own = sorted_place[slot];
@@ -82,11 +143,6 @@ kernel void find_pressure(const Parameters p, global const int* begins,
     list(lists, slot, &count, j, code);
   })
   counts[slot] = count;
-  if (is_solid(own)) return;
-  if (sum > 1) sum -= own_excess(&p, n, as_float(own.w));
-  density[slot] = sum;
-  const float square = sum * sum;
-  const float pressure = p.stiffness * tait_pressure(sum);
-  sorted_motion[slot].w =
-      (p.is_filled ? pressure : max(0 - p.tension * square, pressure)) / square;
+  set_pressure(&p, slot, own, sum, sorted_motion, density);
 }
+#endif

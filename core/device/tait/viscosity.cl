@@ -31,26 +31,34 @@ kernel void sort_direction(const Parameters p, global const DampingProgress* pro
 
 // Computes D times the direction, and <d, (M - dt D) d>. In `p`, only forces that depend on velocities
 // act, and walls are at rest.
-kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multiply_viscosity(
+kernel __attribute__((reqd_work_group_size(ITEMS, 1, 1))) void multiply_viscosity(
     const Parameters p, const Damping damping, global const DampingProgress* progress,
     global const int* begins, global const int* order, global const int4* sorted_place,
-    global const float4* sorted_direction, global const int* counts, global const uint* lists,
-    global const double* mass, global const double* direction, global double* multiplied,
-    global double4* partial) {
+    global const float4* sorted_direction, global const int* counts,
+    global const int* plain_counts, global const uint* lists, global const double* mass,
+    global const double* direction, global double* multiplied, global double4* partial) {
   local double4 sums[GROUP];
   if (!progress->is_open) return;
-  const int slot = get_global_id(0);
-  double4 own = 0;
-  if (slot < p.count + p.solids && !is_solid(sorted_place[slot])) {
-    const int i = order[slot];
-    const float3 a =
-        acceleration_of(&p, slot, begins, sorted_place, sorted_direction, counts, lists);
-    const double3 force = mass[i] * (double3)(a.x, a.y, a.z);
-    const double3 d = vector_at(direction, i);
-    store_vector(force, multiplied, i);
-    own.x = product(d, mass[i] * d - damping.dt * force);
+  const int first = LANES * get_global_id(0);
+  const int end = p.count + p.solids;
+  float3 a[LANES];
+  if (first < end) {
+    find_accelerations(&p, first, begins, sorted_place, sorted_direction, counts, plain_counts,
+                       lists, a);
   }
-  write_partial(sums, own, partial);
+  for (int lane = 0; lane < LANES; ++lane) {
+    const int slot = first + lane;
+    double4 own = 0;
+    if (slot < end && !is_solid(sorted_place[slot])) {
+      const int i = order[slot];
+      const double3 force = mass[i] * (double3)(a[lane].x, a[lane].y, a[lane].z);
+      const double3 d = vector_at(direction, i);
+      store_vector(force, multiplied, i);
+      own.x = product(d, mass[i] * d - damping.dt * force);
+    }
+    sums[LANES * get_local_id(0) + lane] = own;
+  }
+  write_partial_of_lanes(sums, partial);
 }
 
 // Adds the changes of the forces to the accelerations.
