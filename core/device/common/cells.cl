@@ -10,12 +10,20 @@ int scan_group(local int* values, int own, int* before) {
   const int t = get_local_id(0);
   values[t] = own;
   barrier(CLK_LOCAL_MEM_FENCE);
+#if LANES > 1
+  // See COMBINE_GROUP.
+  if (t == 0) {
+    for (int k = 1; k < SCAN_GROUP; ++k) values[k] += values[k - 1];
+  }
+  barrier(CLK_LOCAL_MEM_FENCE);
+#else
   for (int width = 1; width < SCAN_GROUP; width *= 2) {
     const int other = t >= width ? values[t - width] : 0;
     barrier(CLK_LOCAL_MEM_FENCE);
     values[t] += other;
     barrier(CLK_LOCAL_MEM_FENCE);
   }
+#endif
   *before = values[t] - own;
   return values[SCAN_GROUP - 1];
 }

@@ -62,15 +62,35 @@ double4 combined(double4 a, double4 b) {
   return (double4)(a.x + b.x, a.y + b.y, a.z + b.z, greater(a.w, b.w));
 }
 
+// Combines the values of a group by `combine` in a tree, into values[0]. On a CPU, one work-item does
+// so, because a barrier takes more time than some combinations.
+#if LANES > 1
+#define COMBINE_GROUP(values, combine)                                         \
+  {                                                                            \
+    barrier(CLK_LOCAL_MEM_FENCE);                                              \
+    if (get_local_id(0) == 0) {                                                \
+      for (int width = GROUP / 2; width > 0; width /= 2) {                     \
+        for (int t = 0; t < width; ++t) values[t] = combine(values[t], values[t + width]); \
+      }                                                                        \
+    }                                                                          \
+    barrier(CLK_LOCAL_MEM_FENCE);                                              \
+  }
+#else
+#define COMBINE_GROUP(values, combine)                                         \
+  {                                                                            \
+    const int t = get_local_id(0);                                             \
+    barrier(CLK_LOCAL_MEM_FENCE);                                              \
+    for (int width = GROUP / 2; width > 0; width /= 2) {                       \
+      if (t < width) values[t] = combine(values[t], values[t + width]);        \
+      barrier(CLK_LOCAL_MEM_FENCE);                                            \
+    }                                                                          \
+  }
+#endif
+
 // The sums of the first three components over the group, and the maximum of the fourth one.
 double4 sum_group(local double4* sums, double4 own) {
-  const int t = get_local_id(0);
-  sums[t] = own;
-  barrier(CLK_LOCAL_MEM_FENCE);
-  for (int width = GROUP / 2; width > 0; width /= 2) {
-    if (t < width) sums[t] = combined(sums[t], sums[t + width]);
-    barrier(CLK_LOCAL_MEM_FENCE);
-  }
+  sums[get_local_id(0)] = own;
+  COMBINE_GROUP(sums, combined)
   return sums[0];
 }
 
@@ -81,13 +101,7 @@ void write_partial(local double4* sums, double4 own, global double4* partial) {
 
 // The result of sum_group() for the values of a group that are in `sums`.
 double4 sum_lanes(local double4* sums) {
-  barrier(CLK_LOCAL_MEM_FENCE);
-  for (int width = GROUP / 2; width > 0; width /= 2) {
-    for (int t = get_local_id(0); t < width; t += ITEMS) {
-      sums[t] = combined(sums[t], sums[t + width]);
-    }
-    barrier(CLK_LOCAL_MEM_FENCE);
-  }
+  COMBINE_GROUP(sums, combined)
   return sums[0];
 }
 

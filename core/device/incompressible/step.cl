@@ -9,21 +9,15 @@ kernel void place(const Parameters p, const int is_held, global double* position
                   global int* cell_counts, global int* status) {
   const int i = get_global_id(0);
   if (i >= p.count) return;
-  double x[3];
-  double v[3];
-  for (int k = 0; k < 3; ++k) {
-    v[k] = velocity[3 * i + k];
-    x[k] = position[3 * i + k] + p.drift * v[k];
-  }
+  double3 v = vload3(i, velocity);
+  double3 x = vload3(i, position) + p.drift * v;
   if (is_held) {
-    if (reflect_at_walls(&p, x, v)) atomic_inc(status + kStops);
-    for (int k = 0; k < 3; ++k) {
-      position[3 * i + k] = x[k];
-      velocity[3 * i + k] = v[k];
-    }
+    if (reflect_at_walls(&p, &x, &v)) atomic_inc(status + kStops);
+    vstore3(x, i, position);
+    vstore3(v, i, velocity);
   }
-  const float w[3] = {(float)v[0], (float)v[1], (float)v[2]};
-  enter_cell(&p, i, x, w, weight, place, motion, cell_of, rank, cell_counts, status);
+  enter_cell(&p, i, x, convert_float3(v), weight, place, motion, cell_of, rank, cell_counts,
+             status);
 }
 
 // Checks the state at the end of a step.
@@ -31,13 +25,7 @@ kernel void check(const Parameters p, global const double* position,
                   global const double* velocity, global int* status) {
   const int i = get_global_id(0);
   if (i >= p.count) return;
-  double x[3];
-  double v[3];
-  for (int k = 0; k < 3; ++k) {
-    x[k] = position[3 * i + k];
-    v[k] = velocity[3 * i + k];
-  }
-  if (!is_sound(&p, x, v)) atomic_or(status + kFault, 1);
+  if (!is_sound(&p, vload3(i, position), vload3(i, velocity))) atomic_or(status + kFault, 1);
 }
 
 // Sums over the neighbours of a particle: sum_j a_j w, sum_j a_j g x, and sum_j a_j g^2 q^2, with the

@@ -101,14 +101,6 @@ INLINE void list_near(const Parameters* p, const Targets* targets, uint code,
   }
 }
 
-// The cell of a particle.
-int cell_at(const Parameters* p, int4 place) {
-  const int x = cell_along(place.x, p->cells[0], p->cell_bits);
-  const int y = cell_along(place.y, p->cells[1], p->cell_bits);
-  const int z = cell_along(place.z, p->cells[2], p->cell_bits);
-  return (z * p->cells[1] + y) * p->cells[0] + x;
-}
-
 // Lists the neighbours of the particles in the slots [begin, end), which are in the same cell. Element
 // l of counts and plain_counts belongs to slot first + l.
 INLINE void list_neighbours_of_cell(const Parameters* p, int first, int begin, int end,

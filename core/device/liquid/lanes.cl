@@ -86,6 +86,16 @@ int greatest_lane(int16 v) {
   return max(c.x, c.y);
 }
 
+// Loads memory into the cache, because the lists of the next slots are on another page of memory. The
+// function prefetch() of OpenCL has no effect with PoCL.
+#define PREFETCH(address)
+#ifdef __has_builtin
+#if __has_builtin(__builtin_prefetch)
+#undef PREFETCH
+#define PREFETCH(address) __builtin_prefetch(address)
+#endif
+#endif
+
 // Runs BODY for each place in the lists from slot `first` on. `listed` are the entries there, and
 // `offsets` are the offsets of their sources in arrays of vectors, in bytes. The elements of
 // `is_listed` are -1 for slots with a neighbour at this place. For the others, the source is the
@@ -102,6 +112,7 @@ int greatest_lane(int16 v) {
       const int16 is_listed = k < length;                                      \
       const bool has_images = k >= shortest;                                   \
       const uint16 listed = vload16(k, lists + first * LIST_LENGTH);           \
+      PREFETCH(lists + (first + LANES) * LIST_LENGTH + k * LANES);             \
       uint offsets[LANES];                                                     \
       vstore16((listed & SLOT_MASK) * (uint)sizeof(float4), 0, offsets);       \
       BODY                                                                     \

@@ -59,19 +59,28 @@ int cell_along(int place, int count, int bits) {
   return clamp(place >> bits, 0, count - 1);
 }
 
-bool is_sound(const Parameters* p, const double* x, const double* v) {
-  return is_within(p->domain_low, p->domain_high, p->greatest_speed2, x, v);
+// Whether a position is in a box. In this form, a NaN fails.
+bool is_in_box(const double* low, const double* high, double3 x) {
+  return (x.x >= low[0]) & (x.x <= high[0]) & (x.y >= low[1]) & (x.y <= high[1]) &
+         (x.z >= low[2]) & (x.z <= high[2]);
 }
 
-bool is_between_walls(const Parameters* p, const double* x) {
-  bool inside = true;
-  for (int k = 0; k < 3; ++k) inside = inside && x[k] >= p->wall_low[k] && x[k] <= p->wall_high[k];
-  return inside;
+// See is_within().
+bool is_sound(const Parameters* p, double3 x, double3 v) {
+  return (v.x * v.x + v.y * v.y + v.z * v.z <= p->greatest_speed2) &
+         is_in_box(p->domain_low, p->domain_high, x);
+}
+
+bool is_between_walls(const Parameters* p, double3 x) {
+  return is_in_box(p->wall_low, p->wall_high, x);
 }
 
 // Reflects a particle beyond walls. If the reflected position is beyond another wall, the particle
 // is moved to the wall. The outward velocity is reversed if p.bounces is set, and removed otherwise.
-bool reflect_at_walls(const Parameters* p, double* x, double* v) {
+bool reflect_at_walls(const Parameters* p, double3* at, double3* motion) {
+  if (is_between_walls(p, *at)) return false;
+  double x[3] = {at->x, at->y, at->z};
+  double v[3] = {motion->x, motion->y, motion->z};
   bool is_stopped = false;
   for (int k = 0; k < 3; ++k) {
     const bool is_low = x[k] < p->wall_low[k];
@@ -84,8 +93,10 @@ bool reflect_at_walls(const Parameters* p, double* x, double* v) {
       v[k] = p->bounces ? 2 * p->wall_velocity[k] - v[k] : p->wall_velocity[k];
     }
     x[k] = image;
-    if (!is_between_walls(p, x)) x[k] = plane;
+    if (!is_between_walls(p, (double3)(x[0], x[1], x[2]))) x[k] = plane;
   }
+  *at = (double3)(x[0], x[1], x[2]);
+  *motion = (double3)(v[0], v[1], v[2]);
   return is_stopped;
 }
 
@@ -98,25 +109,33 @@ float weight_of(int4 place) {
   return fabs(as_float(place.w));
 }
 
+// The cell of an integer position.
+int cell_at(const Parameters* p, int4 n) {
+  const int x = cell_along(n.x, p->cells[0], p->cell_bits);
+  const int y = cell_along(n.y, p->cells[1], p->cell_bits);
+  const int z = cell_along(n.z, p->cells[2], p->cell_bits);
+  return (z * p->cells[1] + y) * p->cells[0] + x;
+}
+
+// The integer position along an axis.
+int place_along(const Parameters* p, double x, int axis, global int* status) {
+  const double image = wrapped(x, p->origin[axis], p->period[axis]);
+  const double coordinate = (image - p->origin[axis]) * p->inverse_unit;
+  // In this form, a NaN fails.
+  if (coordinate >= -PLACE_LIMIT && coordinate <= PLACE_LIMIT) return convert_int_rte(coordinate);
+  atomic_or(status + kFault, 1);
+  return 0;
+}
+
 // Adds a particle with the velocity w to its cell.
-void enter_cell(const Parameters* p, int i, const double* x, const float* w,
-                global const float* weight, global int4* place, global float4* motion,
-                global int* cell_of, global int* rank, global int* cell_counts,
-                global int* status) {
-  int n[3];
-  int c[3];
-  for (int k = 0; k < 3; ++k) {
-    const double image = wrapped(x[k], p->origin[k], p->period[k]);
-    const double coordinate = (image - p->origin[k]) * p->inverse_unit;
-    // In this form, a NaN fails.
-    const bool fits = coordinate >= -PLACE_LIMIT && coordinate <= PLACE_LIMIT;
-    if (!fits) atomic_or(status + kFault, 1);
-    n[k] = fits ? convert_int_rte(coordinate) : 0;
-    c[k] = cell_along(n[k], p->cells[k], p->cell_bits);
-  }
-  place[i] = (int4)(n[0], n[1], n[2], as_int(weight[i]));
-  motion[i] = (float4)(w[0], w[1], w[2], 0);
-  const int cell = (c[2] * p->cells[1] + c[1]) * p->cells[0] + c[0];
+void enter_cell(const Parameters* p, int i, double3 x, float3 w, global const float* weight,
+                global int4* place, global float4* motion, global int* cell_of, global int* rank,
+                global int* cell_counts, global int* status) {
+  const int4 n = (int4)(place_along(p, x.x, 0, status), place_along(p, x.y, 1, status),
+                        place_along(p, x.z, 2, status), as_int(weight[i]));
+  place[i] = n;
+  motion[i] = (float4)(w, 0);
+  const int cell = cell_at(p, n);
   cell_of[i] = cell;
   rank[i] = atomic_inc(cell_counts + cell);
 }
@@ -128,10 +147,8 @@ kernel void enter_solids(const Parameters p, global const double* solid_position
                          global int* status) {
   const int b = get_global_id(0);
   if (b >= p.solids) return;
-  double x[3];
-  for (int k = 0; k < 3; ++k) x[k] = solid_position[3 * b + k];
-  const float w[3] = {0, 0, 0};
-  enter_cell(&p, p.count + b, x, w, weight, place, motion, cell_of, rank, cell_counts, status);
+  enter_cell(&p, p.count + b, vload3(b, solid_position), 0, weight, place, motion, cell_of, rank,
+             cell_counts, status);
 }
 
 // Enters moving solids into their cells.
@@ -141,13 +158,8 @@ kernel void enter_moving_solids(const Parameters p, global const double* solid_p
                                 global int* rank, global int* cell_counts, global int* status) {
   const int b = get_global_id(0);
   if (b >= p.solids) return;
-  double x[3];
-  float w[3];
-  for (int k = 0; k < 3; ++k) {
-    x[k] = solid_position[3 * b + k];
-    w[k] = (float)solid_velocity[3 * b + k];
-  }
-  enter_cell(&p, p.count + b, x, w, weight, place, motion, cell_of, rank, cell_counts, status);
+  enter_cell(&p, p.count + b, vload3(b, solid_position), convert_float3(vload3(b, solid_velocity)),
+             weight, place, motion, cell_of, rank, cell_counts, status);
 }
 
 // Integers behind each column of positions, which vectors may read.

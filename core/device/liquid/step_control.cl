@@ -38,13 +38,8 @@ double4 greatest_of(double4 a, double4 b) {
 
 // The maxima of the components over the group.
 double4 maximum_of_group(local double4* maxima, double4 own) {
-  const int t = get_local_id(0);
-  maxima[t] = own;
-  barrier(CLK_LOCAL_MEM_FENCE);
-  for (int width = GROUP / 2; width > 0; width /= 2) {
-    if (t < width) maxima[t] = greatest_of(maxima[t], maxima[t + width]);
-    barrier(CLK_LOCAL_MEM_FENCE);
-  }
+  maxima[get_local_id(0)] = own;
+  COMBINE_GROUP(maxima, greatest_of)
   return maxima[0];
 }
 

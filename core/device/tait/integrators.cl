@@ -16,18 +16,16 @@ double acceleration_along(global const float4* acceleration, int i, int k) {
 }
 
 // Checks a particle at the end of a step, and reflects it at walls.
-void end_liquid_step(const Parameters* p, int i, double* x, double* v, global double* position,
+void end_liquid_step(const Parameters* p, int i, double3 x, double3 v, global double* position,
                      global double* velocity, global int* status) {
   bool sound = is_sound(p, x, v);
-  if (reflect_at_walls(p, x, v)) {
+  if (reflect_at_walls(p, &x, &v)) {
     atomic_inc(status + kStops);
     sound = sound && is_sound(p, x, v);
   }
   if (!sound) atomic_or(status + kFault, 1);
-  for (int k = 0; k < 3; ++k) {
-    position[3 * i + k] = x[k];
-    velocity[3 * i + k] = v[k];
-  }
+  vstore3(x, i, position);
+  vstore3(v, i, velocity);
 }
 
 // Takes a step of symplectic Euler.
@@ -37,12 +35,11 @@ kernel void take_liquid_euler_step(const Parameters p, const double dt, const in
                                    global const float4* transport, global int* status) {
   const int i = get_global_id(0);
   if (i >= p.count) return;
-  double x[3];
-  double v[3];
-  for (int k = 0; k < 3; ++k) {
-    v[k] = velocity[3 * i + k] + dt * acceleration_along(acceleration, i, k);
-    x[k] = position[3 * i + k] + dt * (v[k] + transport_of(has_transport, transport, i, k));
-  }
+  const double3 v = vload3(i, velocity) + dt * convert_double3(acceleration[i].xyz);
+  const double3 w = (double3)(transport_of(has_transport, transport, i, 0),
+                              transport_of(has_transport, transport, i, 1),
+                              transport_of(has_transport, transport, i, 2));
+  const double3 x = vload3(i, position) + dt * (v + w);
   end_liquid_step(&p, i, x, v, position, velocity, status);
 }
 
@@ -76,11 +73,7 @@ kernel void end_liquid_stages(const Parameters p, const double dt, global double
                               global const double* sum_of_acceleration, global int* status) {
   const int i = get_global_id(0);
   if (i >= p.count) return;
-  double x[3];
-  double v[3];
-  for (int k = 0; k < 3; ++k) {
-    x[k] = start_position[3 * i + k] + dt * sum_of_velocity[3 * i + k];
-    v[k] = start_velocity[3 * i + k] + dt * sum_of_acceleration[3 * i + k];
-  }
+  const double3 x = vload3(i, start_position) + dt * vload3(i, sum_of_velocity);
+  const double3 v = vload3(i, start_velocity) + dt * vload3(i, sum_of_acceleration);
   end_liquid_step(&p, i, x, v, position, velocity, status);
 }

@@ -1,14 +1,10 @@
 // A step of a weakly compressible liquid; see core/liquid/tait/weakly_compressible.h.
 
-// Ends a step: loads the particle, kicks it and checks its state.
-void end_step(const Parameters* p, int i, global const double* position,
-              global const double* velocity, const float* a, double* x, double* v,
-              global int* status) {
-  for (int k = 0; k < 3; ++k) {
-    x[k] = position[3 * i + k];
-    v[k] = velocity[3 * i + k] + p->closing * (double)a[k];
-  }
-  if (p->closing > 0 && !is_sound(p, x, v)) atomic_or(status + kFault, 1);
+// Ends a step: kicks the particle and checks its state.
+double3 end_step(const Parameters* p, double3 x, double3 v, double3 a, global int* status) {
+  const double3 after = v + p->closing * a;
+  if (p->closing > 0 && !is_sound(p, x, after)) atomic_or(status + kFault, 1);
+  return after;
 }
 
 // Ends a step with a kick, and begins the next one with a kick and a drift. Counts the particles of
@@ -19,23 +15,16 @@ kernel void move(const Parameters p, global double* position, global double* vel
                  global int* cell_counts, global int* status) {
   const int i = get_global_id(0);
   if (i >= p.count) return;
-  const float4 a4 = acceleration[i];
-  const float a[3] = {a4.x, a4.y, a4.z};
-  double x[3];
-  double v[3];
-  end_step(&p, i, position, velocity, a, x, v, status);
-  for (int k = 0; k < 3; ++k) {
-    v[k] += p.opening * (double)a[k];
-    x[k] += p.drift * v[k];
-  }
-  if (p.drift > 0 && reflect_at_walls(&p, x, v)) atomic_inc(status + kStops);
-  float w[3];
-  for (int k = 0; k < 3; ++k) {
-    position[3 * i + k] = x[k];
-    velocity[3 * i + k] = v[k];
-    w[k] = (float)(v[k] + p.prediction * (double)a[k]);
-  }
-  enter_cell(&p, i, x, w, weight, place, motion, cell_of, rank, cell_counts, status);
+  const double3 a = convert_double3(acceleration[i].xyz);
+  double3 x = vload3(i, position);
+  double3 v = end_step(&p, x, vload3(i, velocity), a, status);
+  v += p.opening * a;
+  x += p.drift * v;
+  if (p.drift > 0 && reflect_at_walls(&p, &x, &v)) atomic_inc(status + kStops);
+  vstore3(x, i, position);
+  vstore3(v, i, velocity);
+  enter_cell(&p, i, x, convert_float3(v + p.prediction * a), weight, place, motion, cell_of, rank,
+             cell_counts, status);
 }
 
 // Kicks the particles at the end of the last step.
@@ -43,12 +32,8 @@ kernel void finish(const Parameters p, global const double* position, global dou
                    global const float4* acceleration, global int* status) {
   const int i = get_global_id(0);
   if (i >= p.count) return;
-  const float4 a4 = acceleration[i];
-  const float a[3] = {a4.x, a4.y, a4.z};
-  double x[3];
-  double v[3];
-  end_step(&p, i, position, velocity, a, x, v, status);
-  for (int k = 0; k < 3; ++k) velocity[3 * i + k] = v[k];
+  const double3 a = convert_double3(acceleration[i].xyz);
+  vstore3(end_step(&p, vload3(i, position), vload3(i, velocity), a, status), i, velocity);
 }
 
 // Pressure / (density at rest * square of the speed of sound); see tait_pressure().
