@@ -33,7 +33,7 @@ void find_rates(const Parameters* p, int first, global const int* begins,
   const Columns own = columns_at(places, first);
   const Columns mine = columns_at(motions, first);
   float16 sum = 0;
-  FOR_EACH_LISTED(first, counts, plain_counts, lists, {
+  FOR_EACH_LISTED(p, first, counts, plain_counts, lists, {
     const Columns source = gather(places, offsets);
     Columns its = gather(motions, offsets);
     const Ways x = ways_from(p, listed, has_images, own, source);
@@ -50,7 +50,7 @@ void find_rates(const Parameters* p, int first, global const int* begins,
   })
   vstore16(sum, 0, rates);
   for (int lane = 0; lane < LANES && first + lane < p->count + p->solids; ++lane) {
-    if (counts[first + lane] <= LIST_LENGTH || is_solid(sorted_place[first + lane])) continue;
+    if (counts[first + lane] <= p->list_length || is_solid(sorted_place[first + lane])) continue;
     rates[lane] = rate_of(p, first + lane, begins, sorted_place, counts, lists, motions);
   }
 }
@@ -106,7 +106,7 @@ void find_pushes(const Parameters* p, int first, global const int* begins,
   float16 x = 0;
   float16 y = 0;
   float16 z = 0;
-  FOR_EACH_LISTED(first, counts, plain_counts, lists, {
+  FOR_EACH_LISTED(p, first, counts, plain_counts, lists, {
     const Columns source = gather(places, offsets);
     const float16 its = gather(charge, offsets).x;
     const Ways w = ways_from(p, listed, has_images, own, source);
@@ -123,7 +123,7 @@ void find_pushes(const Parameters* p, int first, global const int* begins,
   vstore16(z, 0, all[2]);
   for (int lane = 0; lane < LANES && first + lane < p->count + p->solids; ++lane) {
     pushes[lane] = (float3)(all[0][lane], all[1][lane], all[2][lane]);
-    if (counts[first + lane] <= LIST_LENGTH || is_solid(sorted_place[first + lane])) continue;
+    if (counts[first + lane] <= p->list_length || is_solid(sorted_place[first + lane])) continue;
     pushes[lane] = push_of(p, first + lane, begins, sorted_place, counts, lists, charge);
   }
 }

@@ -74,7 +74,7 @@ void find_volume_sums(const Parameters* p, int first, global const int* begins,
   float16 gy = 0;
   float16 gz = 0;
   float16 squares = 0;
-  FOR_EACH_LISTED(first, counts, plain_counts, lists, {
+  FOR_EACH_LISTED(p, first, counts, plain_counts, lists, {
     const Columns source = gather(places, offsets);
     const Ways x = ways_from(p, listed, has_images, own, source);
     const float16 q = sqrt(x.square);
@@ -99,7 +99,7 @@ void find_volume_sums(const Parameters* p, int first, global const int* begins,
     sums[lane].density = all[0][lane];
     sums[lane].gradient = (float3)(all[1][lane], all[2][lane], all[3][lane]);
     sums[lane].squares = all[4][lane];
-    if (counts[first + lane] <= LIST_LENGTH) continue;
+    if (counts[first + lane] <= p->list_length) continue;
     const int4 own_place = sorted_place[first + lane];
     const int n[3] = {own_place.x, own_place.y, own_place.z};
     sums[lane] = volume_sums_of(p, n, begins, sorted_place);
@@ -131,7 +131,7 @@ kernel __attribute__((reqd_work_group_size(ITEMS, 1, 1))) void find_density(
     VolumeSums one = {0, 0, 0};
     int count = 0;
     FOR_EACH_CANDIDATE(&p, n, begins, {
-      if (add_volume(&p, code, at, sorted_place[j], &one)) list(lists, first, &count, j, code);
+      if (add_volume(&p, code, at, sorted_place[j], &one)) list(&p, lists, first, &count, j, code);
     })
     counts[first] = count;
     sums[0] = one;

@@ -8,14 +8,13 @@ namespace {
 
 using opencl::Program;
 
-// Constants of neighbours.cl.
-constexpr std::size_t kListLength = 64;
+// A multiple of LIST_GROUP of neighbours.cl.
 constexpr std::size_t kListGroup = 32;
 
 constexpr std::size_t kNumber = sizeof(std::int32_t);
 
-std::size_t list_entries(std::size_t particles) {
-  return (particles + kListGroup - 1) / kListGroup * kListGroup * kListLength;
+std::size_t list_entries(std::size_t particles, const LiquidGeometry& geometry) {
+  return (particles + kListGroup - 1) / kListGroup * kListGroup * geometry.list_length();
 }
 
 std::size_t column_numbers(std::size_t particles) {
@@ -37,7 +36,7 @@ DeviceParticles::DeviceParticles(Program& program, const Model& model,
       sorted_motion(program, slots_in_lanes(model.particle_count) * sizeof(Float4)),
       density(program, model.particle_count * sizeof(float)),
       neighbour_counts(program, slots_in_lanes(model.particle_count) * kNumber),
-      neighbours(program, list_entries(model.particle_count) * kNumber),
+      neighbours(program, list_entries(model.particle_count, geometry) * kNumber),
       columns(program, column_numbers(model.particle_count) * kNumber),
       plain_counts(program, slots_in_lanes(model.particle_count) * kNumber),
       selected(program, sizeof kSelectedLanes),
@@ -69,7 +68,8 @@ std::size_t DeviceParticles::bytes_for(const Model& model, const LiquidGeometry&
   const std::size_t slots = slots_in_lanes(model.particle_count);
   return model.particle_count * (2 * sizeof(Float4) + 3 * kNumber) +
          slots * (2 * sizeof(Float4) + 2 * kNumber) + at_rest * sizeof(Vec3) +
-         (list_entries(model.particle_count) + column_numbers(model.particle_count)) * kNumber +
+         (list_entries(model.particle_count, geometry) + column_numbers(model.particle_count)) *
+             kNumber +
          sizeof kSelectedLanes +
          DeviceCells::bytes_for(model.particle_count, geometry.cell_count());
 }

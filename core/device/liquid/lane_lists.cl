@@ -5,14 +5,17 @@
 
 #define INLINE inline __attribute__((always_inline))
 
+// Greatest number of neighbours in a list.
+#define MOST_NEIGHBOURS 256
+
 // Entries between the starts of two lists during the search. A vector may follow the last entry.
-#define OPEN_LIST (LIST_LENGTH + 8)
+#define OPEN_LIST (MOST_NEIGHBOURS + 8)
 
 // Adds the sources first + l for the set bits l of a byte to a list with `count` neighbours. Returns
 // the new number. `selected` has the positions of the set bits of each byte.
 INLINE int append(uint* list, int count, uint byte, uint first, global const uchar* selected) {
   const uint8 found = convert_uint8(vload8(byte, selected)) + first;
-  vstore8(found, 0, list + min(count, LIST_LENGTH));
+  vstore8(found, 0, list + min(count, MOST_NEIGHBOURS));
   return count + popcount(byte);
 }
 
@@ -157,13 +160,13 @@ void list_neighbours(const Parameters* p, int first, global const int* begins,
   for (int lane = 0; lane < LANES; ++lane) {
     counts[first + lane] = all[lane];
     plain_counts[first + lane] = plain[lane];
-    longest = max(longest, min(all[lane], LIST_LENGTH));
+    longest = max(longest, min(all[lane], p->list_length));
   }
   for (int lane = 0; lane < LANES; ++lane) {
     const uint own = min(first + lane, end - 1);
     for (int k = all[lane]; k < longest; ++k) open[lane * OPEN_LIST + k] = own;
   }
-  global uint* to = lists + first * LIST_LENGTH;
+  global uint* to = lists + first * p->list_length;
   for (int k = 0; k < longest; ++k) {
     for (int lane = 0; lane < LANES; ++lane) to[k * LANES + lane] = open[lane * OPEN_LIST + k];
   }

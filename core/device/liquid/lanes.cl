@@ -101,18 +101,18 @@ int greatest_lane(int16 v) {
 // `is_listed` are -1 for slots with a neighbour at this place. For the others, the source is the
 // particle itself. `has_images` is false if no neighbour at this place is an image. Incomplete lists
 // count as empty.
-#define FOR_EACH_LISTED(first, counts, plain_counts, lists, BODY)               \
+#define FOR_EACH_LISTED(p, first, counts, plain_counts, lists, BODY)               \
   {                                                                            \
     const int16 all = vload16(0, counts + first);                              \
-    const int16 length = select(all, 0, all > LIST_LENGTH);                    \
+    const int16 length = select(all, 0, all > (p)->list_length);                   \
     const int16 plain = vload16(0, plain_counts + first);                      \
-    const int shortest = -greatest_lane(select(-plain, -LIST_LENGTH, plain >= length)); \
+    const int shortest = -greatest_lane(select(-plain, -(p)->list_length, plain >= length)); \
     const int longest = greatest_lane(length);                                 \
     for (int k = 0; k < longest; ++k) {                                        \
       const int16 is_listed = k < length;                                      \
       const bool has_images = k >= shortest;                                   \
-      const uint16 listed = vload16(k, lists + first * LIST_LENGTH);           \
-      PREFETCH(lists + (first + LANES) * LIST_LENGTH + k * LANES);             \
+      const uint16 listed = vload16(k, lists + first * (p)->list_length);         \
+      PREFETCH(lists + (first + LANES) * (p)->list_length + k * LANES);        \
       uint offsets[LANES];                                                     \
       vstore16((listed & SLOT_MASK) * (uint)sizeof(float4), 0, offsets);       \
       BODY                                                                     \

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <span>
 
 #include "core/device/common/kernel_values.h"
 #include "core/device/common/vat_box.h"
@@ -20,6 +22,34 @@ constexpr int kMaxBits = 23;  ///< exact in single precision
 constexpr int kMinBits = 19;
 constexpr Real kMostCells = 4096;
 constexpr Real kPlaces = 1 << 29;  ///< limit of integer positions in particles.cl
+
+// Lists of neighbours. A compressed liquid has more neighbours than a liquid at rest.
+constexpr int kLeastList = 64;
+constexpr int kMostList = 256;  ///< MOST_NEIGHBOURS of lane_lists.cl
+constexpr int kListStep = 16;
+constexpr Real kListReserve = 1.6;  ///< length of a list / number of neighbours at rest
+
+/// Returns the number of neighbours of a particle at rest, if all particles have the least volume
+/// of `volumes`.
+Real neighbours_at_rest(const Model& model, std::span<const Real> volumes) {
+  const Real h = model.liquids[model.material[0]]->support_radius;
+  constexpr Real kPi = std::numbers::pi;
+  const Real reach = model.scene.dimensions == 2 ? kPi * h * h : 4 * kPi / 3 * h * h * h;
+  return reach / std::ranges::min(volumes);
+}
+
+/// Returns the length of lists that are complete for most particles. Solids are on one side of a
+/// particle of the liquid.
+std::int32_t list_length_for(const Model& model) {
+  const std::span volumes(model.rest_volume);
+  Real count = neighbours_at_rest(model, volumes.first(model.liquid_count));
+  if (model.particle_count > model.liquid_count) {
+    const Real solid = neighbours_at_rest(model, volumes.subspan(model.liquid_count));
+    count = std::max(count, (count + solid) / 2);
+  }
+  const Real length = std::clamp(kListReserve * count, Real{kLeastList}, Real{kMostList});
+  return kListStep * static_cast<std::int32_t>(std::ceil(length / kListStep));
+}
 
 }  // namespace
 
@@ -106,6 +136,7 @@ LiquidGeometry::LiquidGeometry(const Model& model, const GuardBounds& bounds) {
   constant_.is_filled = model.is_filled ? 1 : 0;
   constant_.count = static_cast<std::int32_t>(model.liquid_count);
   constant_.solids = static_cast<std::int32_t>(model.particle_count - model.liquid_count);
+  constant_.list_length = list_length_for(model);
 }
 
 LiquidParameters LiquidGeometry::at(const Model& model, const StepMoment& moment) const {

@@ -44,17 +44,18 @@ struct LiquidParameters {
   std::int32_t twice_high[3];
   std::int32_t periods[3];  ///< period in integer positions; 0 along other axes
   std::int32_t cells[3];
-  std::int32_t cell_bits;  ///< a cell has 2^cell_bits integer positions along each axis
-  std::int32_t reach;      ///< cells that a support radius extends into beside the own one
-  std::int32_t support;    ///< support radius in integer positions
-  std::int32_t walls;      ///< bit w: wall w exists
-  std::int32_t sides;      ///< bit w: wall w exists, or its axis is periodic
-  std::int32_t no_slip;    ///< bit w: liquid does not slip along wall w
-  std::int32_t is_thick;   ///< 1: slip walls are viscous, see is_thick()
-  std::int32_t bounces;    ///< 1: walls reverse velocities; 0: walls remove them
-  std::int32_t is_filled;  ///< see Model::is_filled
-  std::int32_t count;      ///< liquid particles
-  std::int32_t solids;     ///< solid particles
+  std::int32_t cell_bits;    ///< a cell has 2^cell_bits integer positions along each axis
+  std::int32_t reach;        ///< cells that a support radius extends into beside the own one
+  std::int32_t support;      ///< support radius in integer positions
+  std::int32_t walls;        ///< bit w: wall w exists
+  std::int32_t sides;        ///< bit w: wall w exists, or its axis is periodic
+  std::int32_t no_slip;      ///< bit w: liquid does not slip along wall w
+  std::int32_t is_thick;     ///< 1: slip walls are viscous, see is_thick()
+  std::int32_t bounces;      ///< 1: walls reverse velocities; 0: walls remove them
+  std::int32_t is_filled;    ///< see Model::is_filled
+  std::int32_t count;        ///< liquid particles
+  std::int32_t solids;       ///< solid particles
+  std::int32_t list_length;  ///< greatest number of neighbours in a list
 };
 
 /// Returns the bits of the sides across periodic axes.
@@ -71,6 +72,8 @@ class LiquidGeometry {
 
   LiquidParameters at(const Model& model, const StepMoment& moment) const;
   std::size_t cell_count() const;
+  /// Returns the greatest number of neighbours in a list.
+  std::size_t list_length() const { return static_cast<std::size_t>(constant_.list_length); }
   /// Returns the square of the greatest valid speed in a step of `dt` [s], see GuardBounds::travel.
   Real greatest_speed2(Real dt) const;
 

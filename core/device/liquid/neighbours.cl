@@ -112,8 +112,7 @@ float own_excess(const Parameters* p, const int* n, float weight) {
 
 // Lists of neighbours: entry k of slot s is entry_of(s, k). An entry is the slot of the neighbour
 // and, in the bits from MIRROR_BITS on, the axes of the mirror. Images follow the other neighbours. A
-// list with more than LIST_LENGTH neighbours is incomplete.
-#define LIST_LENGTH 64
+// list with more than p.list_length neighbours is incomplete.
 #if LANES > 1
 #define LIST_GROUP LANES
 #else
@@ -122,8 +121,8 @@ float own_excess(const Parameters* p, const int* n, float weight) {
 #define MIRROR_BITS 26
 #define SLOT_MASK ((1u << MIRROR_BITS) - 1)
 
-int entry_of(int slot, int k) {
-  return ((slot / LIST_GROUP) * LIST_LENGTH + k) * LIST_GROUP + slot % LIST_GROUP;
+int entry_of(const Parameters* p, int slot, int k) {
+  return ((slot / LIST_GROUP) * p->list_length + k) * LIST_GROUP + slot % LIST_GROUP;
 }
 
 uint code_of(const Mirror* m) {
@@ -151,10 +150,10 @@ Mirror mirror_of(uint code) {
 // Runs BODY for each source `j` that may be near the particle in `slot` at n. `code` is the code of
 // the mirror of the image, or 0.
 #define FOR_EACH_NEIGHBOUR(p, slot, n, begins, counts, lists, BODY)            \
-  if (counts[slot] <= LIST_LENGTH) {                                           \
+  if (counts[slot] <= (p)->list_length) {                                        \
     const int length = counts[slot];                                           \
     for (int entry = 0; entry < length; ++entry) {                             \
-      const uint listed = lists[entry_of(slot, entry)];                        \
+      const uint listed = lists[entry_of(p, slot, entry)];                     \
       const int j = listed & SLOT_MASK;                                        \
       const uint code = listed & ~SLOT_MASK;                                   \
       BODY                                                                     \
@@ -164,8 +163,8 @@ Mirror mirror_of(uint code) {
   }
 
 // Adds a source to a list.
-void list(global uint* lists, int slot, int* count, int source, uint code) {
-  if (*count < LIST_LENGTH) lists[entry_of(slot, *count)] = source | code;
+void list(const Parameters* p, global uint* lists, int slot, int* count, int source, uint code) {
+  if (*count < p->list_length) lists[entry_of(p, slot, *count)] = source | code;
   ++*count;
 }
 

@@ -218,7 +218,7 @@ void find_accelerations(const Parameters* p, int first, global const int* begins
   const Columns own = columns_at(places, first);
   const Columns mine = columns_at(sorted_motion, first);
   Sums sum = {0, 0, 0};
-  FOR_EACH_LISTED(first, counts, plain_counts, lists, {
+  FOR_EACH_LISTED(p, first, counts, plain_counts, lists, {
     const Columns source = gather(places, offsets);
     const Columns its = gather(sorted_motion, offsets);
     if (has_images) {
@@ -244,7 +244,7 @@ void find_accelerations(const Parameters* p, int first, global const int* begins
     const int slot = first + lane;
     const int4 place = sorted_place[slot];
     if (is_solid(place)) continue;
-    if (counts[slot] > LIST_LENGTH) {
+    if (counts[slot] > p->list_length) {
       a[lane] = acceleration_of(p, slot, begins, sorted_place, sorted_motion, counts, lists);
       continue;
     }

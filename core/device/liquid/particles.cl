@@ -50,6 +50,7 @@ typedef struct {
   int is_filled;
   int count;
   int solids;
+  int list_length;
 } Parameters;
 
 // Limit of positions, so that differences of positions and images fit into 32 bits.

@@ -76,7 +76,7 @@ void find_densities(const Parameters* p, int first, global const int* begins,
   global const float4* places = (global const float4*)sorted_place;
   const Columns own = columns_at(places, first);
   float16 sum = 0;
-  FOR_EACH_LISTED(first, counts, plain_counts, lists, {
+  FOR_EACH_LISTED(p, first, counts, plain_counts, lists, {
     const Columns source = gather(places, offsets);
     const Ways x = ways_from(p, listed, has_images, own, source);
     sum += select(0.0f, fabs(source.w) * kernel_values(sqrt(x.square)), is_listed);
@@ -101,7 +101,7 @@ kernel void find_pressure(const Parameters p, global const int* begins,
     const int4 own = sorted_place[slot];
     const int n[3] = {own.x, own.y, own.z};
     float sum = sums[lane];
-    if (counts[slot] > LIST_LENGTH) {
+    if (counts[slot] > p.list_length) {
       sum = 0;
       FOR_EACH_CANDIDATE(&p, n, begins, { sum += density_by(&p, at, sorted_place[j]); })
     }
@@ -125,7 +125,7 @@ kernel void find_pressure(const Parameters p, global const int* begins,
     const float square = square_of(way_to(&p, at, other));
     if (!(square < 1)) continue;
     sum += weight_of(other) * kernel_value(sqrt(square));
-    list(lists, slot, &count, j, code);
+    list(&p, lists, slot, &count, j, code);
   })
   counts[slot] = count;
   set_pressure(&p, slot, own, sum, sorted_motion, density);

@@ -60,7 +60,7 @@ const SceneCase kScenes[] = {
        set_strain(scene, Vec3(1, 1, -3));
      }},
     {"more neighbours than a list has",
-     [](Scene& scene) { scene.materials[0].liquid->support_radius = 2.6 * kSpacing; }},
+     [](Scene& scene) { scene.materials[0].liquid->support_radius = 4.2 * kSpacing; }},
     {"over-dense at the start",
      [](Scene& scene) {
        std::get<BoxShape>(scene.bodies[0].shape) = {{0.075, 0.06, 0.12}, {0.16, 0.12, 0.24}};

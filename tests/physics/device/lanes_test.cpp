@@ -40,6 +40,8 @@ const SceneCase kScenes[] = {
        scene.bodies[1].shape = SphereShape{{0.22, 0.06, 0.1}, 0.05};
      }},
     {"some particles with more neighbours than a list has",
+     [](Scene& scene) { scene.materials[0].liquid->support_radius = 4.2 * kSpacing; }},
+    {"lists of more than 64 neighbours",
      [](Scene& scene) { scene.materials[0].liquid->support_radius = 2.6 * kSpacing; }},
     {"large cells, because the vat is large",
      [](Scene& scene) {
