@@ -62,21 +62,23 @@ double4 combined(double4 a, double4 b) {
   return (double4)(a.x + b.x, a.y + b.y, a.z + b.z, greater(a.w, b.w));
 }
 
-// Combines the values of a group by `combine` in a tree, into values[0]. On a CPU, one work-item does
-// so, because a barrier takes more time than some combinations.
+// Combines the values of a group by `combine` in a tree, into values[0]. The values from `count` on
+// are 0. On a CPU, one work-item does so, because a barrier takes more time than some combinations.
 #if LANES > 1
-#define COMBINE_GROUP(values, combine)                                         \
+#define COMBINE_SOME(values, count, combine)                                   \
   {                                                                            \
     barrier(CLK_LOCAL_MEM_FENCE);                                              \
     if (get_local_id(0) == 0) {                                                \
       for (int width = GROUP / 2; width > 0; width /= 2) {                     \
-        for (int t = 0; t < width; ++t) values[t] = combine(values[t], values[t + width]); \
+        for (int t = 0; t < min(width, count); ++t) {                          \
+          values[t] = combine(values[t], values[t + width]);                   \
+        }                                                                      \
       }                                                                        \
     }                                                                          \
     barrier(CLK_LOCAL_MEM_FENCE);                                              \
   }
 #else
-#define COMBINE_GROUP(values, combine)                                         \
+#define COMBINE_SOME(values, count, combine)                                   \
   {                                                                            \
     const int t = get_local_id(0);                                             \
     barrier(CLK_LOCAL_MEM_FENCE);                                              \
@@ -86,6 +88,7 @@ double4 combined(double4 a, double4 b) {
     }                                                                          \
   }
 #endif
+#define COMBINE_GROUP(values, combine) COMBINE_SOME(values, GROUP, combine)
 
 // The sums of the first three components over the group, and the maximum of the fourth one.
 double4 sum_group(local double4* sums, double4 own) {

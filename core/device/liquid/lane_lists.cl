@@ -67,8 +67,11 @@ INLINE void list_sources(const Parameters* p, const Targets* targets, int begin0
     const char16 bits = convert_char16(x * x + y * y + z * z < reach2 && is_source);
     const int lane = targets->lane[t];
     uint* list = lists + lane * OPEN_LIST;
-    const int count = append(list, counts[lane], byte_of(bits.lo), (uint)begin0 | code, selected);
-    counts[lane] = append(list, count, byte_of(bits.hi), (uint)begin1 | code, selected);
+    int count = append(list, counts[lane], byte_of(bits.lo), (uint)begin0 | code, selected);
+    if (begin1 < end1) {
+      count = append(list, count, byte_of(bits.hi), (uint)begin1 | code, selected);
+    }
+    counts[lane] = count;
   }
 }
 

@@ -108,8 +108,9 @@ void DeviceDamping::iterate(const SolidParameters& p, const DampingParameters& d
                spin_change_, t.mass, t.radius, t.body_of, t.bodies, t.laws, t.exclusion_begin,
                t.exclusions, t.spring_begin, t.springs, multiplied_, torque_, partial_);
   if (bodies_ > 0) {
-    program_.run("multiply_damping_of_bodies", bodies_ * kOne, damping, first, groups_of(count_),
-                 r.rigid, r.poses, solids.position, torque_, direction_, multiplied_, partial_);
+    program_.run_in_lanes("multiply_damping_of_bodies", bodies_ * kOne, damping, first,
+                          groups_of(count_), r.rigid, r.poses, solids.position, torque_, direction_,
+                          multiplied_, partial_);
   }
   program_.run("find_damping_length", kOne, groups_of(count_) + bodies, partial_, progress_);
   if (free_ > 0) {

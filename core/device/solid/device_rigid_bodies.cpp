@@ -207,8 +207,9 @@ void DeviceRigidBodies::pose(const SolidParameters& p, const Buffer& position,
 void DeviceRigidBodies::gather(bool has_friction, const Buffer& position, const Buffer& radius,
                                const Buffer& particle_force, const Buffer& bounds) {
   if (count_ == 0) return;
-  program_.run("gather_rigid_forces", count_ * Program::kGroup, std::int32_t{has_friction}, rigid,
-               poses, position, radius, particle_force, torque, loads, force, bounds);
+  program_.run_in_lanes("gather_rigid_forces", count_ * Program::kGroup, std::int32_t{has_friction},
+                        rigid, poses, position, radius, particle_force, torque, loads, force,
+                        bounds);
 }
 
 }  // namespace vat

@@ -155,7 +155,7 @@ void DeviceSolids::move(const StepMoment& start, Real end, Real step,
                counters);
   cells_.sort();
   program_.run("collect_solids", range_.count, after, cells_.cell_of, cells_.begins,
-               cells_.unsorted, motion_.position, order_, sorted_position_);
+               cells_.unsorted, motion_.position, t.body_of, order_, sorted_position_);
   if (start.drift > 0) change_springs();
   if (model_.cells.empty()) return;
   program_.run(

@@ -163,16 +163,19 @@ void add_contacts(const Solids* p, global const int* begins, global const int* o
                   global const uint* exclusions, Target* t) {
   const double at[3] = {t->x.x, t->x.y, t->x.z};
   const Body mine = bodies[t->body];
+  const double untouched = mine.touches_itself ? -1 : t->body;
   FOR_EACH_ROW_OF_SOLIDS(p, at, p->reach, begins, {
     for (int slot = begin; slot < end; ++slot) {
-      const double3 way = t->x - sorted_position[slot].xyz;
+      const double4 its = sorted_position[slot];
+      if (its.w == untouched) continue;
+      const double3 way = t->x - its.xyz;
       const double3 x = way + (double3)(shift[0], shift[1], shift[2]);
       const double square = product(x, x);
       if (!(square < p->reach * p->reach)) continue;
       const int j = order[slot];
-      const int body = body_of[j];
+      const int body = (int)its.w;
       const bool is_own = body == t->body;
-      if (j == t->index || (is_own && !mine.touches_itself)) continue;
+      if (j == t->index) continue;
       const int other = bodies[body].material;
       // Within a liquid, there are other forces.
       if (t->index < p->liquids && j < p->liquids && mine.material == other) continue;
@@ -332,13 +335,8 @@ void add_walls(const Solids* p, ContactLaw law, Target* t) {
 
 // The greater components of the values of a group.
 double2 greatest_of_group(local double2* values, double2 own) {
-  const int t = get_local_id(0);
-  values[t] = own;
-  barrier(CLK_LOCAL_MEM_FENCE);
-  for (int width = GROUP / 2; width > 0; width /= 2) {
-    if (t < width) values[t] = fmax(values[t], values[t + width]);
-    barrier(CLK_LOCAL_MEM_FENCE);
-  }
+  values[get_local_id(0)] = own;
+  COMBINE_GROUP(values, fmax)
   return values[0];
 }
 

@@ -241,7 +241,8 @@ kernel void finish_solids(const Solids p, global double* position, global double
 // box.
 kernel void collect_solids(const Solids p, global const int* cell_of, global const int* begins,
                            global const int* unsorted, global const double* position,
-                           global int* order, global double4* sorted_position) {
+                           global const int* body_of, global int* order,
+                           global double4* sorted_position) {
   const int t = get_global_id(0);
   if (t >= p.count) return;
   const int i = unsorted[t];
@@ -249,5 +250,5 @@ kernel void collect_solids(const Solids p, global const int* cell_of, global con
   order[slot] = i;
   const double3 x = vector_at(position, i);
   sorted_position[slot] = (double4)(wrapped_solid(&p, x.x, 0), wrapped_solid(&p, x.y, 1),
-                                    wrapped_solid(&p, x.z, 2), 0);
+                                    wrapped_solid(&p, x.z, 2), body_of[i]);
 }

@@ -247,24 +247,34 @@ typedef struct {
 Resultant resultant_of(local double4* sums, const Rigid* body, double3 center,
                        global const double* position, global const double* force,
                        global const double* torque) {
-  double4 own_force = 0;
-  double4 own_torque = 0;
-  for (int e = body->begin + (int)get_local_id(0); e < body->end; e += GROUP) {
-    const double3 f = vector_at(force, e);
-    own_force.xyz += f;
-    own_torque.xyz += cross_product(vector_at(position, e) - center, f) + vector_at(torque, e);
-  }
+  const int count = body->end - body->begin;
+  const int first = LANES * get_local_id(0);
   Resultant total;
-  total.force = sum_group(sums, own_force).xyz;
+  for (int t = first; t < first + LANES; ++t) {
+    double4 own = 0;
+    for (int e = body->begin + t; e < body->end; e += GROUP) own.xyz += vector_at(force, e);
+    sums[t] = own;
+  }
+  COMBINE_SOME(sums, count, combined)
+  total.force = sums[0].xyz;
   barrier(CLK_LOCAL_MEM_FENCE);
-  total.torque = sum_group(sums, own_torque).xyz;
+  for (int t = first; t < first + LANES; ++t) {
+    double4 own = 0;
+    for (int e = body->begin + t; e < body->end; e += GROUP) {
+      own.xyz += cross_product(vector_at(position, e) - center, vector_at(force, e)) +
+                 vector_at(torque, e);
+    }
+    sums[t] = own;
+  }
+  COMBINE_SOME(sums, count, combined)
+  total.torque = sums[0].xyz;
   barrier(CLK_LOCAL_MEM_FENCE);
   return total;
 }
 
 // Sums the forces on the particles of each body, see gather_rigid_forces(). `bounds` receives the
 // bound of the oscillations of the body in its contacts, see find_bound(). One group for each body.
-kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void gather_rigid_forces(
+kernel __attribute__((reqd_work_group_size(ITEMS, 1, 1))) void gather_rigid_forces(
     const int has_friction, global const Rigid* rigid, global const Pose* poses,
     global const double* position, global const double* radius, global const double* force,
     global const double* torque, global const double2* loads, global double* rigid_force,
@@ -275,20 +285,24 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void gather_rigid_forc
   const Pose pose = poses[b];
   const double3 center = three(pose.center);
   const Resultant total = resultant_of(sums, &body, center, position, force, torque);
-  double4 bound = 0;
-  for (int e = body.begin + (int)get_local_id(0); e < body.end; e += GROUP) {
-    const double2 load = loads[e];
-    const double3 arm = vector_at(position, e) - center;
-    double arm2 = product(arm, arm);
-    if (has_friction) {
-      const double reach = sqrt(arm2) + radius[e];
-      arm2 = reach * reach;
+  const int first = LANES * get_local_id(0);
+  for (int t = first; t < first + LANES; ++t) {
+    double4 bound = 0;
+    for (int e = body.begin + t; e < body.end; e += GROUP) {
+      const double2 load = loads[e];
+      const double3 arm = vector_at(position, e) - center;
+      double arm2 = product(arm, arm);
+      if (has_friction) {
+        const double reach = sqrt(arm2) + radius[e];
+        arm2 = reach * reach;
+      }
+      bound.xy += (body.inverse_mass + arm2 * body.greatest_inverse_moment) * load;
     }
-    bound.xy += (body.inverse_mass + arm2 * body.greatest_inverse_moment) * load;
+    sums[t] = bound;
   }
-  const double4 greatest = sum_group(sums, bound);
+  COMBINE_SOME(sums, body.end - body.begin, combined)
   if (get_local_id(0) != 0) return;
   store_vector(body.is_held ? (double3)(0) : total.force, rigid_force, 2 * b);
   store_vector(body.is_held ? (double3)(0) : total.torque, rigid_force, 2 * b + 1);
-  bounds[b] = greatest.xy;
+  bounds[b] = sums[0].xy;
 }

@@ -76,7 +76,7 @@ kernel void pose_damping(const Solids p, global const DampingProgress* progress,
 }
 
 // Sums the products of the particles of each body. One group for each body.
-kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multiply_damping_of_bodies(
+kernel __attribute__((reqd_work_group_size(ITEMS, 1, 1))) void multiply_damping_of_bodies(
     const Damping damping, const int first, const int groups, global const Rigid* rigid,
     global const Pose* poses, global const double* position, global const double* torque,
     global const double* direction, global double* multiplied, global double4* partial) {
