@@ -107,12 +107,16 @@ INLINE void list_near(const Parameters* p, const Targets* targets, uint code,
   }
 }
 
-// Lists the neighbours of the particles in the slots [begin, end), which are in the same cell. Element
-// l of counts and plain_counts belongs to slot first + l.
-INLINE void list_neighbours_of_cell(const Parameters* p, int first, int begin, int end,
-                                    global const int* begins, global const int4* sorted_place,
-                                    global const int* columns, global const uchar* selected,
-                                    uint* lists, int* counts, int* plain_counts) {
+// The number of small cells along x whose particles are searched together: the rows around them have
+// about 8 particles.
+#define SMALL_CELLS 4
+
+// Lists the neighbours of the particles in the slots [begin, end), which are in the same cell, or in
+// SMALL_CELLS cells. Element l of counts and plain_counts belongs to slot first + l.
+INLINE void list_neighbours_of_cells(const Parameters* p, int first, int begin, int end,
+                                     global const int* begins, global const int4* sorted_place,
+                                     global const int* columns, global const uchar* selected,
+                                     uint* lists, int* counts, int* plain_counts) {
   int sides[LANES];
   int all_sides = 0;
   for (int slot = begin; slot < end; ++slot) {
@@ -153,10 +157,12 @@ void list_neighbours(const Parameters* p, int first, global const int* begins,
   int all[LANES] = {0};
   int plain[LANES] = {0};
   for (int begin = first; begin < end;) {
-    const int cell = cell_at(p, sorted_place[begin]);
-    const int next = min(end, begins[cell + 1]);
-    list_neighbours_of_cell(p, first, begin, next, begins, sorted_place, columns, selected, open,
-                            all, plain);
+    const int4 own = sorted_place[begin];
+    const int rest = p->cells[0] - cell_along(own.x, p->cells[0], p->cell_bits);
+    const int cells = min(p->reach > 1 ? SMALL_CELLS : 1, rest);
+    const int next = min(end, begins[cell_at(p, own) + cells]);
+    list_neighbours_of_cells(p, first, begin, next, begins, sorted_place, columns, selected, open,
+                             all, plain);
     begin = next;
   }
   int longest = 0;
