@@ -93,5 +93,35 @@ TEST(LanesOfDevices, DoNotChangeTheBitsOfSolvesForViscosity) {
   EXPECT_EQ(hash_with_lanes(scene, opencl::kMostLanes), hash_with_lanes(scene, 1));
 }
 
+/// Adds a ball and a jelly that fall on each other and on the liquid, with a long step.
+void add_bodies(Scene& scene) {
+  scene.materials.push_back(make_material("wood", 500));
+  scene.materials.push_back(make_material("jelly", 400));
+  scene.materials[2].springs =
+      LatticeSprings{SpringConstants{600, 20}, SpringConstants{300, 10}, SpringConstants{150, 5}};
+  scene.default_interface = {1000, 20};
+  scene.default_interface.friction = 0.4;
+  scene.bodies.push_back(BodyDescription{"ball", BodyKind::rigid, "wood",
+                                         SphereShape{{0.22, 0.06, 0.03}, 0.03}, kSpacing});
+  scene.bodies.push_back(BodyDescription{"jelly", BodyKind::deformable, "jelly",
+                                         BoxShape{{0.22, 0.06, 0.08}, {0.08, 0.06, 0.04}},
+                                         kSpacing});
+  scene.bodies[1].angular_velocity = {5, 20, 0};
+  scene.bodies[2].velocity = {0, 0, -1};
+}
+
+// A tree of the sums of a group has the same order.
+TEST(LanesOfDevices, DoNotChangeTheBitsOfBodies) {
+  Scene scene = make_column(PressureSolver::tait);
+  scene.materials[0].liquid->viscosity = 0.01;
+  add_bodies(scene);
+  const std::uint64_t in_liquid = hash_with_lanes(scene, opencl::kMostLanes);
+  EXPECT_EQ(in_liquid, hash_with_lanes(scene, 1));
+  scene.bodies.erase(scene.bodies.begin());
+  const std::uint64_t alone = hash_with_lanes(scene, opencl::kMostLanes);
+  EXPECT_EQ(alone, hash_with_lanes(scene, 1));
+  EXPECT_NE(alone, in_liquid);
+}
+
 }  // namespace
 }  // namespace vat::device_lanes_test
