@@ -198,7 +198,7 @@ std::size_t DeviceProjection::find(const SolidParameters& p, const Step& step,
                s.cells.counts);
   s.cells.sort();
   program_.run("collect_solids", particles_, p, s.cells.cell_of, s.cells.begins, s.cells.unsorted,
-               s.motion.position, s.order, s.sorted_position);
+               s.motion.position, s.tables.body_of, s.order, s.sorted_position);
   for (const std::int32_t is_writing : {0, 1}) {
     program_.run("find_projections", particles_, p, step, is_writing, s.cells.begins, s.order,
                  s.sorted_position, s.tables.mobility, s.tables.radius, s.tables.body_of,
