@@ -102,13 +102,13 @@ Scene make_limited_rope(int count) {
 }  // namespace
 
 const std::vector<GrowthFamily>& growth_families() {
-  static const std::vector<GrowthFamily> families = {{"projected contacts",
-                                                      "blocks in a stack",
+  static const std::vector<GrowthFamily> families = {{"contacts in a stack",
+                                                      "blocks",
                                                       {2, 5, 10, 20, 40},
                                                       &make_stack,
                                                       &IterationCounts::contacts},
-                                                     {"projected contacts",
-                                                      "rows of bricks in a wall",
+                                                     {"contacts in a wall",
+                                                      "rows of bricks",
                                                       {1, 2, 4, 8, 16},
                                                       &make_wall,
                                                       &IterationCounts::contacts},

@@ -54,8 +54,8 @@ struct GrowthCase {
 // errors of previous steps add up to the tolerance. Without these impulses, a wall needs more than
 // a hundred.
 TEST(GrowthSweep, NeedsFewIterationsForContactsAtRest) {
-  for (const auto& [size, values] : {std::pair("blocks in a stack", std::array{5, 20}),
-                                     std::pair("rows of bricks in a wall", std::array{2, 4})}) {
+  for (const auto& [size, values] :
+       {std::pair("blocks", std::array{5, 20}), std::pair("rows of bricks", std::array{2, 4})}) {
     for (const int value : values) {
       const GrowthPoint point = measure_growth(growth_family(size), value, 200);
       EXPECT_EQ(point.events, 0U) << value << " " << size;
