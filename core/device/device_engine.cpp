@@ -36,8 +36,12 @@ MethodKind kind_of(const Model& model) {
 
 class DeviceEngine : public StepEngine {
  public:
-  DeviceEngine(std::unique_ptr<Program> program, DeviceArithmetic arithmetic)
-      : program_(std::move(program)), name_("opencl-" + std::string(to_string(arithmetic))) {}
+  /// `options` are those of `program`, which is for scenes with the kernel wendland_c2.
+  DeviceEngine(std::unique_ptr<Program> program, std::string options, DeviceArithmetic arithmetic)
+      : device_(program->device()),
+        options_(std::move(options)),
+        program_(std::move(program)),
+        name_("opencl-" + std::string(to_string(arithmetic))) {}
 
   std::string_view arithmetic() const override { return name_; }
   Status bind(std::shared_ptr<const Model> model) override;
@@ -45,15 +49,33 @@ class DeviceEngine : public StepEngine {
   Status read(State& state) override;
 
  private:
+  /// Creates the program for the kernel of a scene, if the present program is for another one.
+  Status adapt_program(const Scene& scene);
+
+  const opencl::Device device_;
+  const std::string options_;
+  KernelId kernel_ = KernelId::wendland_c2;  ///< of program_
   std::unique_ptr<Program> program_;
   std::string name_;
   std::unique_ptr<DeviceMethod> method_;  ///< of the bound model
 };
 
+Status DeviceEngine::adapt_program(const Scene& scene) {
+  if (scene.kernel == kernel_) return {};
+  const bool is_cubic = scene.kernel == KernelId::cubic_spline;
+  Result<std::unique_ptr<Program>> program = Program::create(
+      device_, device_kernels(), options_ + (is_cubic ? " -DVAT_CUBIC_SPLINE" : ""));
+  if (!program) return program.errors();
+  program_ = std::move(program).value();
+  kernel_ = scene.kernel;
+  return {};
+}
+
 Status DeviceEngine::bind(std::shared_ptr<const Model> model) {
   method_.reset();  // before the allocation of new buffers
   Errors missing = find_features_not_on_device(*model);
   if (!missing.empty()) return missing;
+  if (Status adapted = adapt_program(model->scene); !adapted) return adapted;
   const MethodKind kind = kind_of(*model);
   const std::size_t bytes = kind.bytes_for(*model);
   const opencl::Device& device = program_->device();
@@ -103,7 +125,8 @@ Result<std::unique_ptr<StepEngine>> make_device_engine(const opencl::Device& dev
   }
   Result<std::unique_ptr<Program>> program = Program::create(device, device_kernels(), options);
   if (!program) return program.errors();
-  return std::unique_ptr<StepEngine>(new DeviceEngine(std::move(program).value(), arithmetic));
+  return std::unique_ptr<StepEngine>(
+      new DeviceEngine(std::move(program).value(), options, arithmetic));
 }
 
 }  // namespace vat

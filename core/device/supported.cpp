@@ -99,7 +99,6 @@ void Missing::check_gas() {
 }
 
 void Missing::check_liquid() {
-  reject(scene_.kernel != KernelId::wendland_c2, "/kernel", "must be wendland_c2");
   reject(scene_.pair_precision != PairPrecision::single_precision, "/pair_precision",
          "must be single");
   reject(is_incompressible() && !scene_.forces.pressure, "/forces/pressure",

@@ -88,7 +88,7 @@ TEST(ChooseDevice, MeasuresOnlyScenesThatADeviceTakes) {
     return std::chrono::steady_clock::time_point{};
   };
   Scene scene = load_scene(kDamBreak, "").value();
-  scene.kernel = KernelId::cubic_spline;
+  scene.numerics.control = StepControl::local;
   const Simulation other = Simulation::create(scene).value();
   ASSERT_GE(other.particle_count(), kLeastForDevice);
   EXPECT_TRUE(choose_device({.is_auto = true}, other, runner, now).is_cpu);

@@ -1,7 +1,18 @@
 // Neighbours of particles, and their lists. A wall is a mirror, and the sides of a periodic axis shift
 // by its period. The images near a particle are the particles near its own images.
 
-// The kernel wendland_c2, see core/kernels/smoothing_kernel.h, for numbers and vectors.
+// The kernel of the scene, see core/kernels/smoothing_kernel.h, for numbers and vectors.
+#ifdef VAT_CUBIC_SPLINE
+#define DEFINE_KERNEL(Reals, kernel_value, kernel_slope)                       \
+  Reals kernel_value(Reals q) {                                                \
+    const Reals rest = 1 - q;                                                  \
+    return q < 0.5f ? 1 - 6 * q * q * rest : 2 * (rest * rest) * rest;         \
+  }                                                                            \
+  Reals kernel_slope(Reals q) {                                                \
+    const Reals rest = 1 - q;                                                  \
+    return q < 0.5f ? 2 - 3 * q : rest * rest / q;                             \
+  }
+#else
 #define DEFINE_KERNEL(Reals, kernel_value, kernel_slope)                       \
   Reals kernel_value(Reals q) {                                                \
     const Reals rest = 1 - q;                                                  \
@@ -12,6 +23,7 @@
     const Reals rest = 1 - q;                                                  \
     return rest * rest * rest;                                                 \
   }
+#endif
 DEFINE_KERNEL(float, kernel_value, kernel_slope)
 #if LANES > 1
 DEFINE_KERNEL(float16, kernel_values, kernel_slopes)

@@ -100,6 +100,23 @@ TEST(Device, HasTheAccuracyOfTheCpu) {
   expect_accuracy_of_cpu(make_column(), kScenes, kSteps);
 }
 
+TEST(Device, HasTheAccuracyOfTheCpuWithTheCubicSpline) {
+  Scene scene = make_column();
+  scene.kernel = KernelId::cubic_spline;
+  expect_accuracy_of_cpu(scene, kScenes, 30);
+}
+
+// The device compiles its kernels for the scene.
+TEST(Device, ChangesTheKernel) {
+  Simulation simulation = make_on_device(make_column());
+  simulation.advance(10);
+  Scene scene = make_column();
+  scene.kernel = KernelId::cubic_spline;
+  Simulation other = make_on_device(scene);
+  EXPECT_EQ(other.advance(10).device_steps, 10U);
+  EXPECT_GT(difference(simulation, other), 1e-6);
+}
+
 TEST(Device, HasTheAccuracyOfTheCpuWithOtherIntegrators) {
   constexpr std::uint32_t kSteps = 15;  // explicit Euler is unstable
   expect_accuracy_with_other_integrators(make_column(), kScenes, kSteps);
@@ -275,7 +292,6 @@ TEST(Device, RefusesFeaturesThatItLacks) {
          s.central_field = CentralField{{0, 0, 0}, 1};
        }},
       {"/sleeping", [](Scene& s) { s.sleeping = Sleeping{}; }},
-      {"/kernel", [](Scene& s) { s.kernel = KernelId::cubic_spline; }},
       {"/pair_precision", [](Scene& s) { s.pair_precision = PairPrecision::double_precision; }},
       {"/numerics/control",
        [](Scene& s) {

@@ -53,6 +53,7 @@ const SceneCase kScenes[] = {
        scene.materials[0].liquid->viscosity = 1;
        set_no_slip(scene);
      }},
+    {"cubic spline", [](Scene& scene) { scene.kernel = KernelId::cubic_spline; }},
     {"drop that is squeezed without a vat and gravity",
      [](Scene& scene) {
        scene.vat.reset();
@@ -343,7 +344,6 @@ TEST(IncompressibleDevice, RefusesFeaturesThatItLacks) {
   const SceneCase cases[] = {
       {"/forces/pressure", [](Scene& s) { s.forces.pressure = false; }},
       {"/numerics/control", [](Scene& s) { s.numerics.control = StepControl::local; }},
-      {"/kernel", [](Scene& s) { s.kernel = KernelId::cubic_spline; }},
       {"/central_field",
        [](Scene& s) {
          s.vat.reset();
