@@ -8,7 +8,6 @@
 #include "core/device/liquid/device_step_control.h"
 #include "core/device/solid/solid_geometry.h"
 #include "core/numerics/step_limits.h"
-#include "core/solid/implicit_springs.h"
 
 namespace vat {
 namespace {
@@ -132,8 +131,6 @@ void Missing::check_projections(const std::string& path) {
          "must be velocity_verlet with contacts by projection");
   reject(std::ranges::any_of(scene_.bodies, has_motion), path,
          "must have the law penalty in a scene with driven bodies");
-  reject(has_implicit_springs(model_), path,
-         "must have the law penalty in a scene with implicit springs");
 }
 
 void Missing::check_laws() {

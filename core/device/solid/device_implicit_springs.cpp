@@ -103,22 +103,23 @@ std::size_t DeviceImplicitSprings::bytes_for(const Model& model) {
 }
 
 void DeviceImplicitSprings::move(Real dt, bool is_damping, const SolidTables& t,
-                                 const opencl::Buffer& position, const opencl::Buffer& velocity) {
+                                 const opencl::Buffer& start, const opencl::Buffer& position,
+                                 const opencl::Buffer& velocity) {
   Constants constants = constants_;
   constants.dt = dt;
   program_.run("move_implicit_springs", bodies_.bodies.size() * Program::kGroup, constants,
                std::int32_t{is_damping}, table_, t.spring_begin, t.springs, t.mass, t.mobility,
-               stiffness_, places_, slopes_, factor_, columns_, position, velocity, counts_);
+               stiffness_, places_, slopes_, factor_, columns_, start, position, velocity, counts_);
 }
 
-void DeviceImplicitSprings::drift(Real dt, const SolidTables& tables,
+void DeviceImplicitSprings::drift(Real dt, const SolidTables& tables, const opencl::Buffer& start,
                                   const opencl::Buffer& position, const opencl::Buffer& velocity) {
-  move(dt, false, tables, position, velocity);
+  move(dt, false, tables, start, position, velocity);
 }
 
 void DeviceImplicitSprings::damp(Real dt, const SolidTables& tables, const opencl::Buffer& position,
                                  const opencl::Buffer& velocity) {
-  if (are_damped_) move(dt, true, tables, position, velocity);
+  if (are_damped_) move(dt, true, tables, position, position, velocity);
 }
 
 void DeviceImplicitSprings::clear_counts() {

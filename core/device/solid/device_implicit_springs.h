@@ -23,9 +23,9 @@ class DeviceImplicitSprings {
   /// Returns the bytes of the buffers.
   static std::size_t bytes_for(const Model& model);
 
-  /// Moves the bodies over a drift of `dt` [s].
-  void drift(Real dt, const SolidTables& tables, const opencl::Buffer& position,
-             const opencl::Buffer& velocity);
+  /// Moves the bodies from the positions `start` over a drift of `dt` [s].
+  void drift(Real dt, const SolidTables& tables, const opencl::Buffer& start,
+             const opencl::Buffer& position, const opencl::Buffer& velocity);
   /// Applies the dashpots over `dt` [s].
   void damp(Real dt, const SolidTables& tables, const opencl::Buffer& position,
             const opencl::Buffer& velocity);
@@ -35,8 +35,8 @@ class DeviceImplicitSprings {
   void count(AdvanceReport& report);
 
  private:
-  void move(Real dt, bool is_damping, const SolidTables& tables, const opencl::Buffer& position,
-            const opencl::Buffer& velocity);
+  void move(Real dt, bool is_damping, const SolidTables& tables, const opencl::Buffer& start,
+            const opencl::Buffer& position, const opencl::Buffer& velocity);
 
   /// The struct Implicit of spring_system.cl.
   struct Constants {

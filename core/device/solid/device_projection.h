@@ -55,6 +55,9 @@ class DeviceProjection {
   void finish(const Model& model, const SolidParameters& p, Real end, Real dt,
               const ProjectedSolids& solids, const opencl::Buffer& counters);
 
+  /// Returns the positions at the start of the last drift.
+  const opencl::Buffer& start_position() const { return start_position_; }
+
   /// Adds the iterations since save() to a report.
   void count(AdvanceReport& report);
 

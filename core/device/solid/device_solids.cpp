@@ -201,13 +201,15 @@ void DeviceSolids::divide_kicks(SolidParameters& p, Real time, Real step,
     }
     kick(p.opening);
     limit_springs(p.drift);
+    // Impulses of projected contacts precede the implicit springs, so that they stretch no spring.
     if (projection_) {
       projection_->drift(model_, parameters(time + p.drift), time, p.drift, projected(), counters);
-      p.drift = 0;
     }
     if (implicit_springs_) {
-      implicit_springs_->drift(p.drift, t, motion_.position, motion_.velocity);
+      const opencl::Buffer& from = projection_ ? projection_->start_position() : motion_.position;
+      implicit_springs_->drift(p.drift, t, from, motion_.position, motion_.velocity);
     }
+    if (projection_) p.drift = 0;
   }
   // Otherwise, the kernels of rigid bodies kick them.
   if (projection_) p.closing = p.opening = 0;

@@ -60,7 +60,7 @@ double4 find_residual(const SpringSystem* s, double half_dt) {
 
 void begin_drift(const SpringSystem* s) {
   FOR_PARTICLES_OF(s, k) {
-    store_vector(vector_at(s->body_position, s->all.begin + k), s->position, k);
+    store_vector(vector_at(s->start_of_drift, s->all.begin + k), s->position, k);
     store_vector(vector_at(s->body_velocity, s->all.begin + k), s->start_velocity, k);
     store_vector((double3)(0), s->mean_velocity, k);
   }
@@ -137,7 +137,7 @@ void end_drift(const SpringSystem* s) {
   FOR_PARTICLES_OF(s, k) {
     const int i = s->all.begin + k;
     const double3 way = s->all.dt * vector_at(s->mean_velocity, k);
-    store_vector(vector_at(s->body_position, i) + way, s->body_position, i);
+    store_vector(vector_at(s->start_of_drift, i) + way, s->body_position, i);
     store_vector(vector_at(s->start_velocity, k), s->body_velocity, i);
   }
 }
@@ -387,7 +387,8 @@ SpringSystem system_of(Implicit all, ImplicitBody body, global const uint* sprin
                        global const SpringEnd* springs, global const double* mass,
                        global const double* mobility, global const double* stiffness,
                        global const uint* places, global SpringSlope* slopes,
-                       global double* factor, global double* columns, global double* position,
+                       global double* factor, global double* columns,
+                       global const double* start, global double* position,
                        global double* velocity) {
   const long size = 3 * (long)all.count;
   const SpringSystem s = {all,
@@ -412,6 +413,7 @@ SpringSystem system_of(Implicit all, ImplicitBody body, global const uint* sprin
                           columns + 9 * size,
                           columns + 10 * size,
                           columns + 11 * size,
+                          start,
                           position,
                           velocity};
   return s;
@@ -424,19 +426,20 @@ int widest_sum(int count) {
   return width;
 }
 
-// Moves each body over the drift of `dt`, or applies its dashpots over `dt`.
+// Moves each body from the positions `start` over the drift of `dt`, or applies its dashpots over `dt`.
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void move_implicit_springs(
     const Implicit all, const int is_damping, global const ImplicitBody* bodies,
     global const uint* spring_begin, global const SpringEnd* springs, global const double* mass,
     global const double* mobility, global const double* stiffness, global const uint* places,
     global SpringSlope* slopes, global double* factor, global double* columns,
-    global double* position, global double* velocity, global ImplicitCounts* counts) {
+    global const double* start, global double* position, global double* velocity,
+    global ImplicitCounts* counts) {
   local double4 sums[GROUP];
   local SpringState state;
   const ImplicitBody body = bodies[get_group_id(0)];
   const SpringSystem s =
       system_of(all, body, spring_begin, springs, mass, mobility, stiffness, places, slopes,
-                factor, columns, position, velocity);
+                factor, columns, start, position, velocity);
   const int t = get_local_id(0);
   const int widest = widest_sum(body.end - body.begin);
   int phase = !is_damping ? kBeginDrift : body.is_damped ? kBeginDamping : kEndGroup;

@@ -140,6 +140,7 @@ typedef struct {
   global double* mean_velocity;
   global double* velocity;
   global double* last_velocity;
+  global const double* start_of_drift;  // positions of all particles
   global double* body_position;
   global double* body_velocity;
 } SpringSystem;

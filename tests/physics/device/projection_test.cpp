@@ -55,6 +55,12 @@ const SceneCase kScenes[] = {
        scene.interfaces = {{{"wood", "wood"}, {20000, 10, 0.4}, {}}};
        scene.default_interface.restitution = 0.5;
      }},
+    {"implicit springs",
+     [](Scene& scene) {
+       scene.default_interface.friction = 0.4;
+       scene.materials[1].implicit_springs = true;
+       scene.bodies[3].position.z() = 0.07;  // near the floor
+     }},
     {"fixed marble",
      [](Scene& scene) {
        scene.default_interface.friction = 0.4;
@@ -134,7 +140,6 @@ TEST(ProjectionDevice, RefusesFeaturesThatItLacks) {
          s.bodies[0].angular_velocity.setZero();
          s.bodies[0].motion = SlideMotion{{1, 0, 0}, 0.1, 1};
        }},
-      {"/default_interface", [](Scene& s) { s.materials[1].implicit_springs = true; }},
   };
   expect_refusals(make_marbles(), cases);
 }
