@@ -127,8 +127,6 @@ void Missing::check_liquid() {
 }
 
 void Missing::check_projections(const std::string& path) {
-  reject(scene_.numerics.integrator != IntegratorId::velocity_verlet, "/numerics/integrator",
-         "must be velocity_verlet with contacts by projection");
   reject(std::ranges::any_of(scene_.bodies, has_motion), path,
          "must have the law penalty in a scene with driven bodies");
 }

@@ -179,14 +179,25 @@ void DeviceSolids::limit_springs(Real dt) {
 void DeviceSolids::end_divided_step(const SolidParameters& p, Real time, Real step,
                                     const opencl::Buffer& counters) {
   if (p.closing == 0) return;
-  const SolidTables& t = tables_;
   kick(p.closing);
   if (projection_) projection_->finish(model_, p, time, step, projected(), counters);
   if (implicit_springs_) {
-    implicit_springs_->damp(p.closing, t, motion_.position, motion_.velocity);
+    implicit_springs_->damp(p.closing, tables_, motion_.position, motion_.velocity);
   }
+  check(p, step, counters);
+}
+
+void DeviceSolids::project_step(Real start, Real end, Real dt, const opencl::Buffer& counters) {
+  const SolidParameters p = parameters(end);
+  projection_->drift(model_, p, start, dt, projected(), counters);
+  projection_->finish(model_, p, end, dt, projected(), counters);
+  check(p, model_.scene.numerics.step, counters);
+}
+
+void DeviceSolids::check(const SolidParameters& p, Real step, const opencl::Buffer& counters) {
   if (projection_) rigid_.check(p, step, counters);
   if (range_.free == 0) return;
+  const SolidTables& t = tables_;
   program_.run("check_solids", range_.free, p, motion_.position, motion_.velocity, t.mobility,
                t.body_of, t.bodies, counters);
 }

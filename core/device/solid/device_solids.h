@@ -87,7 +87,11 @@ class DeviceSolids {
       const bool is_divided = has_divided_kicks();
       if (is_divided) kick(dt);
       limit_springs(dt);
-      integration_->take_euler_step(at_end, is_divided ? 0 : dt, dt, solids, counters);
+      if (projection_) {
+        project_step(start, end, dt, counters);
+      } else {
+        integration_->take_euler_step(at_end, is_divided ? 0 : dt, dt, solids, counters);
+      }
     } else {
       integration_->begin(solids);
       for (std::size_t s = 0; s < stages.size(); ++s) {
@@ -127,6 +131,8 @@ class DeviceSolids {
   /// The kicks of move(), and all work between them and the drift. The remaining parts of `p` are
   /// those of the kernel move_solids.
   void divide_kicks(SolidParameters& p, Real time, Real step, const opencl::Buffer& counters);
+  /// Stops particles at walls, and checks the state at the end of a step.
+  void check(const SolidParameters& p, Real step, const opencl::Buffer& counters);
   /// Ends a step with its closing kick at `time` [s], and checks the state.
   void end_divided_step(const SolidParameters& p, Real time, Real step,
                         const opencl::Buffer& counters);
@@ -134,6 +140,8 @@ class DeviceSolids {
     return {tables_, motion_, rigid_, cells_, order_, sorted_position_, predicted_};
   }
   void kick(Real dt);
+  /// Ends a step of symplectic Euler with contacts by projection after its kick.
+  void project_step(Real start, Real end, Real dt, const opencl::Buffer& counters);
   /// Limits the elongation of springs in the next drift of `dt` [s].
   void limit_springs(Real dt);
   void change_springs() {
