@@ -37,6 +37,7 @@ Result<Api> find_functions() {
   find(api.get_build_info, "clGetProgramBuildInfo");
   find(api.release_program, "clReleaseProgram");
   find(api.create_kernel, "clCreateKernel");
+  find(api.get_kernel_info, "clGetKernelInfo");
   find(api.release_kernel, "clReleaseKernel");
   find(api.set_argument, "clSetKernelArg");
   find(api.enqueue_kernel, "clEnqueueNDRangeKernel");

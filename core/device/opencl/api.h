@@ -23,6 +23,7 @@ struct Api {
   decltype(&clGetProgramBuildInfo) get_build_info;
   decltype(&clReleaseProgram) release_program;
   decltype(&clCreateKernel) create_kernel;
+  decltype(&clGetKernelInfo) get_kernel_info;
   decltype(&clReleaseKernel) release_kernel;
   decltype(&clSetKernelArg) set_argument;
   decltype(&clEnqueueNDRangeKernel) enqueue_kernel;

@@ -37,7 +37,7 @@ Result<std::unique_ptr<Program>> Program::create(const Device& device, const std
 }
 
 Program::~Program() {
-  for (const auto& [name, kernel] : kernels_) api_.release_kernel(kernel);
+  for (const Kernel& each : kernels_) api_.release_kernel(each.kernel);
   if (queue_ != nullptr) api_.release_queue(queue_);
 }
 
@@ -47,14 +47,17 @@ void Program::check(cl_int code, const char* action) const {
                       " failed with OpenCL error " + std::to_string(code));
 }
 
-cl_kernel Program::find_kernel(const char* name) {
-  const auto found = std::ranges::find(kernels_, name, &std::pair<std::string, cl_kernel>::first);
-  if (found != kernels_.end()) return found->second;
+const Program::Kernel& Program::find_kernel(const char* name) {
+  const auto found = std::ranges::find(kernels_, name, &Kernel::name);
+  if (found != kernels_.end()) return *found;
   cl_int code = CL_SUCCESS;
   cl_kernel kernel = api_.create_kernel(compiled_->program(), name, &code);
   check(code, name);
-  kernels_.emplace_back(name, kernel);
-  return kernel;
+  kernels_.push_back({name, kernel, 0});
+  cl_uint& arguments = kernels_.back().arguments;
+  check(api_.get_kernel_info(kernel, CL_KERNEL_NUM_ARGS, sizeof arguments, &arguments, nullptr),
+        name);
+  return kernels_.back();
 }
 
 void Program::set_bytes(const char* name, cl_kernel kernel, cl_uint index, std::size_t size,

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/device/opencl/compiled_program.h"
+#include "core/support/check.h"
 
 /// Kernels of one device, their buffers, and the queue that runs them in order.
 namespace vat::opencl {
@@ -61,19 +62,14 @@ class Program {
   /// own count.
   template <class... Arguments>
   void run(const char* name, std::size_t count, const Arguments&... arguments) {
-    cl_kernel kernel = find_kernel(name);
-    cl_uint index = 0;
-    (set_argument(name, kernel, index++, arguments), ...);
-    enqueue(name, kernel, count, kGroup);
+    enqueue(name, prepare(name, arguments...), count, kGroup);
   }
   /// Runs the kernel `name` for `count` particles like run(). Each work-item computes
   /// Device::lanes particles, so that a group also has kGroup particles.
   template <class... Arguments>
   void run_in_lanes(const char* name, std::size_t count, const Arguments&... arguments) {
-    cl_kernel kernel = find_kernel(name);
-    cl_uint index = 0;
-    (set_argument(name, kernel, index++, arguments), ...);
-    enqueue(name, kernel, (count + device().lanes - 1) / device().lanes, kGroup / device().lanes);
+    enqueue(name, prepare(name, arguments...), (count + device().lanes - 1) / device().lanes,
+            kGroup / device().lanes);
   }
   template <class T>
   void write(const Buffer& buffer, std::span<const T> values) {
@@ -94,7 +90,24 @@ class Program {
 
   Program(const Api& api, std::shared_ptr<const CompiledProgram> compiled)
       : api_(api), compiled_(std::move(compiled)) {}
-  cl_kernel find_kernel(const char* name);
+  /// A kernel keeps the arguments of its last run, so that a missing one would not be an error.
+  struct Kernel {
+    std::string name;
+    cl_kernel kernel;
+    cl_uint arguments;
+  };
+
+  const Kernel& find_kernel(const char* name);
+  /// Returns the kernel with these arguments, whose number must be that of the kernel.
+  template <class... Arguments>
+  cl_kernel prepare(const char* name, const Arguments&... arguments) {
+    const Kernel& found = find_kernel(name);
+    VAT_CHECK(found.arguments == sizeof...(arguments));
+    cl_kernel kernel = found.kernel;
+    cl_uint index = 0;
+    (set_argument(name, kernel, index++, arguments), ...);
+    return kernel;
+  }
   void set_argument(const char* name, cl_kernel kernel, cl_uint index, const Buffer& buffer) {
     cl_mem memory = buffer.memory();
     set_bytes(name, kernel, index, sizeof(cl_mem), &memory);
@@ -114,7 +127,7 @@ class Program {
   const Api& api_;
   const std::shared_ptr<const CompiledProgram> compiled_;
   cl_command_queue queue_ = nullptr;
-  std::vector<std::pair<std::string, cl_kernel>> kernels_;
+  std::vector<Kernel> kernels_;
 };
 
 }  // namespace vat::opencl
