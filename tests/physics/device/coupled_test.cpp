@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/damping/damping_solve.h"
 #include "protocol/scene/scene_json.h"
 #include "tests/physics/device/on_device.h"
 #include "tests/support/mixed_scenes.h"
@@ -179,15 +178,7 @@ TEST(CoupledDevice, SolvesForStrongDamping) {
   add_other_ball(scene);
   add_jelly(scene);
   scene.default_interface = {3000, 30, 0.4};
-  Simulation device = make_on_device(scene);
-  Simulation cpu = make_simulation(scene);
-  const AdvanceReport report = device.advance(kSteps);
-  const AdvanceReport expected = cpu.advance(kSteps);
-  EXPECT_EQ(report.device_steps, kSteps);
-  EXPECT_GT(report.iterations.damping, kSteps);
-  EXPECT_GT(expected.iterations.damping, kSteps);
-  const Real moved = difference(device, make_simulation(scene));
-  EXPECT_LT(difference(device, cpu), kDampingTolerance * moved);
+  expect_damping_of_cpu(scene, kSteps, kSteps + 1);
 }
 
 // A driven body follows its motion exactly, with one rounding error of its position per step.

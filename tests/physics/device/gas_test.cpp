@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include "core/damping/damping_solve.h"
 #include "protocol/scene/scene_json.h"
 #include "tests/physics/device/on_device.h"
 #include "tests/support/mixed_scenes.h"
@@ -126,15 +125,7 @@ TEST(GasDevice, SolvesForStrongDampingOfContacts) {
   Scene scene = make_pool();
   add_solid(scene, BodyKind::rigid, {0.09, 0.06, 0.205});
   scene.default_interface = {20'000, 60};
-  Simulation device = make_on_device(scene);
-  Simulation cpu = make_simulation(scene);
-  const AdvanceReport report = device.advance(kSteps);
-  const AdvanceReport expected = cpu.advance(kSteps);
-  EXPECT_EQ(report.device_steps, kSteps);
-  EXPECT_GT(report.iterations.damping, 0U);
-  EXPECT_GT(expected.iterations.damping, 0U);
-  const Real moved = difference(device, make_simulation(scene));
-  EXPECT_LT(difference(device, cpu), kDampingTolerance * moved);
+  expect_damping_of_cpu(scene, kSteps, 1);
 }
 
 void expect_conservation(BodyKind kind) {

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/damping/damping_solve.h"
 #include "core/device/device_use.h"
 #include "core/simulation/simulation.h"
 #include "tests/support/scenes.h"
@@ -237,6 +238,21 @@ inline void expect_same_bits_in_any_portions(const Scene& scene, std::uint32_t r
   one.restore(middle);
   EXPECT_EQ(one.advance(20).device_steps, 20U);
   EXPECT_EQ(one.state_hash(), end);
+}
+
+/// Expects that the device solves for damping in at least `least` iterations, and that its motion
+/// differs from that of the CPU by at most the tolerance of these solves.
+inline void expect_damping_of_cpu(const Scene& scene, std::uint32_t steps, std::uint64_t least) {
+  Simulation device = make_on_device(scene);
+  Simulation cpu = make_simulation(scene);
+  const AdvanceReport report = device.advance(steps);
+  const AdvanceReport expected = cpu.advance(steps);
+  EXPECT_EQ(report.device_steps, steps);
+  EXPECT_EQ(report.steps, expected.steps);
+  EXPECT_GE(report.iterations.damping, least);
+  EXPECT_GE(expected.iterations.damping, least);
+  const Real moved = difference(device, make_simulation(scene));
+  EXPECT_LT(difference(device, cpu), kDampingTolerance * moved);
 }
 
 /// Expects that the device continues a state of the CPU, and the reverse, with this tolerance of
