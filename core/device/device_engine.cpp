@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "core/device/common/arithmetic_check.h"
 #include "core/device/gas/gas_method.h"
 #include "core/device/incompressible/incompressible_method.h"
 #include "core/device/kernel_source.h"
@@ -125,6 +126,13 @@ Result<std::unique_ptr<StepEngine>> make_device_engine(const opencl::Device& dev
   }
   Result<std::unique_ptr<Program>> program = Program::create(device, device_kernels(), options);
   if (!program) return program.errors();
+  if (arithmetic == DeviceArithmetic::exact) {
+    try {
+      if (Status exact = test_arithmetic(*program.value()); !exact) return exact.errors();
+    } catch (const DeviceFailure& failure) {
+      return failed(failure.what());
+    }
+  }
   return std::unique_ptr<StepEngine>(
       new DeviceEngine(std::move(program).value(), options, arithmetic));
 }

@@ -16,6 +16,7 @@
 #include "tests/bench/fanout/fanout.h"
 #include "tests/bench/faults/faults.h"
 #include "tests/bench/instructions/instructions.h"
+#include "tests/bench/kernels/kernels.h"
 #include "tests/bench/output/output.h"
 #include "tests/bench/race/race.h"
 #include "tests/bench/seeks.h"
@@ -39,6 +40,7 @@ int run_command(int argc, char** argv) {
   add_speed_command(app, exit_code);
   add_compare_command(app, exit_code);
   add_instructions_command(app, exit_code);
+  add_kernels_command(app, exit_code);
   add_validate_command(app, exit_code);
   add_accuracy_command(app, exit_code);
   add_stability_command(app, exit_code);

@@ -31,7 +31,9 @@ Device describe(const Api& api, cl_device_id id) {
   device.greatest_buffer = number_of<cl_ulong>(api, id, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
   device.compute_units = number_of<cl_uint>(api, id, CL_DEVICE_MAX_COMPUTE_UNITS);
   const auto type = number_of<cl_device_type>(api, id, CL_DEVICE_TYPE);
-  device.lanes = (type & CL_DEVICE_TYPE_CPU) != 0 ? kMostLanes : 1;
+  // A simulator of GPUs can have the types of both.
+  const bool is_cpu = (type & (CL_DEVICE_TYPE_CPU | CL_DEVICE_TYPE_GPU)) == CL_DEVICE_TYPE_CPU;
+  device.lanes = is_cpu ? kMostLanes : 1;
   device.has_doubles = number_of<cl_device_fp_config>(api, id, CL_DEVICE_DOUBLE_FP_CONFIG) != 0;
   const auto single = number_of<cl_device_fp_config>(api, id, CL_DEVICE_SINGLE_FP_CONFIG);
   constexpr cl_device_fp_config kExact =

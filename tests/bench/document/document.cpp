@@ -71,6 +71,8 @@ constexpr Content kContents[] = {
     {"counts", "stability", "stability", counts_table},
     {"devices", "speed", "speed", devices_table},
     {"device-cases", "validate", "device", device_cases_table},
+    {"kernels", "kernels", "kernels", kernels_table},
+    {"times", "kernels", "times", times_table},
     {"race", "race", "race", race_table},
     {"durability", "durability", "durability", durability_table},
     {"recovery", "recovery", "recovery", recovery_table},

@@ -1,6 +1,7 @@
 #include "tests/bench/document/page_tables.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <set>
 #include <string_view>
@@ -18,6 +19,10 @@ std::string three_digits(Real value) {
   char buffer[32];
   std::snprintf(buffer, sizeof buffer, "%.3g", value);
   return buffer;
+}
+
+std::string three_digits_or_whole(Real value) {
+  return value < 1000 ? three_digits(value) : std::to_string(std::lround(value));
 }
 
 /// Formats a value with three digits, or as a dash if it is absent.
@@ -282,6 +287,36 @@ Table devices_table(const Json& speed) {
                             threads(cpu), cell_number(cpu, "ms per step"),
                             three_digits(time(cpu) / time(row)), machine_cell(row)});
     }
+  }
+  return table;
+}
+
+Table kernels_table(const Json& kernels) {
+  constexpr const char* kFigures[] = {"runs per step", "single",         "double",
+                                      "instructions",  "accessed bytes", "bytes of groups",
+                                      "distinct bytes"};
+  Table table{{"scene", "kernel"}, {}};
+  table.columns.insert(table.columns.end(), std::begin(kFigures), std::end(kFigures));
+  for (const Json& row : kernels) {
+    std::vector<Cell> cells{cell_text(row, "scene"), '`' + cell_text(row, "kernel") + '`'};
+    for (const char* figure : kFigures) {
+      cells.emplace_back(three_digits_or_whole(row.at(figure).get<Real>()));
+    }
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
+Table times_table(const Json& times) {
+  Table table{{"scene"}, {}};
+  for (const Json& row : times) {
+    std::vector<Cell> cells{cell_text(row, "scene")};
+    for (const auto& [column, value] : row.items()) {
+      if (!value.is_number()) continue;
+      if (table.rows.empty()) table.columns.push_back(column);
+      cells.emplace_back(three_digits(value.get<Real>()));
+    }
+    table.rows.push_back(std::move(cells));
   }
   return table;
 }

@@ -51,6 +51,11 @@ Table device_cases_table(const Json& rows);
 /// Returns one row for each case on a device, with the times on most threads of the CPU.
 Table devices_table(const Json& speed);
 
+/// Work of the kernels of devices.
+Table kernels_table(const Json& kernels);
+/// Predicted times of kernels on GPUs.
+Table times_table(const Json& times);
+
 /// Returns all columns except the commit, with the machine in one column.
 Table durability_table(const Json& durability);
 Table recovery_table(const Json& recovery);

@@ -1,7 +1,13 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "core/device/common/arithmetic_check.h"
 #include "protocol/scene/scene_json.h"
 #include "tests/physics/device/on_device.h"
 #include "tests/support/scenes.h"
@@ -309,6 +315,27 @@ TEST(Device, RefusesFeaturesThatItLacks) {
        }},
   };
   expect_refusals(make_column(), cases);
+}
+
+// Each operation has 256 results.
+TEST(Device, IsRefusedIfItRoundsIncorrectly) {
+  const opencl::Device device{.name = "Pocket", .driver = "ACME 1"};
+  const std::vector<double> exact = exact_arithmetic();
+  EXPECT_TRUE(check_arithmetic(device, exact));
+  const std::pair<std::size_t, const char*> cases[] = {
+      {0, "a product and a sum in single precision"},
+      {3 * 256, "a subnormal product"},
+      {7 * 256 - 1, "a square root in double precision"}};
+  for (const auto& [index, operation] : cases) {
+    std::vector<double> wrong = exact;
+    wrong[index] = std::nextafter(wrong[index], 10);
+    const Status status = check_arithmetic(device, wrong);
+    ASSERT_FALSE(status);
+    EXPECT_EQ(status.errors()[0].code, "not_available");
+    EXPECT_THAT(
+        status.errors()[0].message,
+        testing::HasSubstr(std::string("Pocket (ACME 1) rounds ") + operation + " incorrectly"));
+  }
 }
 
 TEST(Device, IsRefusedIfItDoesNotExist) {
