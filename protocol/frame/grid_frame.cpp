@@ -25,30 +25,65 @@ std::int32_t whole(double value, std::int32_t greatest) {
   return static_cast<std::int32_t>(nearest(value, -greatest, greatest));
 }
 
-void place_particles(const PublishedState::Body& body, const FrameScale& scale, GridBlock& block) {
+/// Whether a particle is in frames of this level of detail, which have 2^detail eighths of them.
+bool is_in_detail(std::uint32_t number, std::uint8_t detail) {
+  std::uint32_t hash = number;
+  hash = (hash ^ (hash >> 16)) * 0x7feb352dU;
+  hash = (hash ^ (hash >> 15)) * 0x846ca68bU;
+  const std::uint32_t eighth = (hash ^ (hash >> 16)) >> 29;
+  return eighth < 1U << detail;
+}
+
+/// Writes the selected particles of a body; `selected(i)` is the index of the i-th of them.
+template <class Selected>
+void place_particles(const PublishedState::Body& body, std::size_t count, const Selected& selected,
+                     const FrameScale& scale, GridBlock& block) {
   const auto& [origin, quantum] = scale.grid;
-  const std::size_t count = body.positions.size();
-  VAT_CHECK(body.numbers.empty() || body.numbers.size() == count);
-  VAT_CHECK(std::ranges::adjacent_find(body.numbers, std::ranges::greater_equal{}) ==
-            body.numbers.end());
-  block.numbers.assign(body.numbers.begin(), body.numbers.end());
-  drop_plain_numbers(count, block.numbers);
   block.positions.resize(3 * count);
   for (std::size_t i = 0; i < count; ++i) {
-    const Vec3& position = body.positions[i];
+    const Vec3& position = body.positions[selected(i)];
     block.positions[3 * i] = grid_coordinate(position.x(), origin[0], quantum);
     block.positions[3 * i + 1] = grid_coordinate(position.y(), origin[1], quantum);
     block.positions[3 * i + 2] = grid_coordinate(position.z(), origin[2], quantum);
   }
   for (std::size_t a = 0; a < kFrameAttributes; ++a) {
-    block.attributes[a].clear();
     if (!has_attribute(block.kind, scale, a)) continue;
-    VAT_CHECK(body.attributes[a].size() == count);
-    for (const float value : body.attributes[a]) {
-      block.attributes[a].push_back(
-          whole(static_cast<double>(value) / scale.attribute_quanta[a], kMaxAttribute));
+    VAT_CHECK(body.attributes[a].size() == body.positions.size());
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto value = static_cast<double>(body.attributes[a][selected(i)]);
+      block.attributes[a].push_back(whole(value / scale.attribute_quanta[a], kMaxAttribute));
     }
   }
+}
+
+/// Writes the particles of this level of detail.
+void place_particles(const PublishedState::Body& body, std::uint8_t detail, const FrameScale& scale,
+                     GridBlock& block) {
+  const std::size_t count = body.positions.size();
+  VAT_CHECK(body.numbers.empty() || body.numbers.size() == count);
+  VAT_CHECK(std::ranges::adjacent_find(body.numbers, std::ranges::greater_equal{}) ==
+            body.numbers.end());
+  if (detail == kFullDetail) {
+    block.numbers.assign(body.numbers.begin(), body.numbers.end());
+    drop_plain_numbers(count, block.numbers);
+    place_particles(
+        body, count, [](std::size_t i) { return i; }, scale, block);
+    return;
+  }
+  std::vector<std::uint32_t> selected(count);
+  block.numbers.resize(count);
+  std::size_t used = 0;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t number = body.numbers.empty() ? i : body.numbers[i];
+    selected[used] = i;
+    block.numbers[used] = number;
+    used += is_in_detail(number, detail) ? 1 : 0;  // without branches, which would be unpredictable
+  }
+  selected.resize(used);
+  block.numbers.resize(used);
+  drop_plain_numbers(used, block.numbers);
+  place_particles(
+      body, selected.size(), [&](std::size_t i) { return selected[i]; }, scale, block);
 }
 
 /// Returns the bits per component. The centre and the orientation each have half of the maximum
@@ -114,7 +149,7 @@ void select_from(const GridBlock& all, std::uint8_t detail, const GridRegion* re
                  GridBlock& part) {
   for (std::size_t i = 0; i < all.particle_count(); ++i) {
     const std::uint16_t* position = &all.positions[3 * i];
-    if (detail_layer(all.number(i)) > detail) continue;
+    if (!is_in_detail(all.number(i), detail)) continue;
     if (region != nullptr && !region->contains(position)) continue;
     part.numbers.push_back(all.number(i));
     part.positions.insert(part.positions.end(), position, position + 3);
@@ -140,19 +175,18 @@ void drop_plain_numbers(std::size_t count, std::vector<std::uint32_t>& numbers) 
 }
 
 std::uint8_t detail_layer(std::uint32_t number) {
-  std::uint32_t hash = number;
-  hash = (hash ^ (hash >> 16)) * 0x7feb352dU;
-  hash = (hash ^ (hash >> 15)) * 0x846ca68bU;
-  const std::uint32_t eighth = (hash ^ (hash >> 16)) >> 29;
-  if (eighth < 2) return static_cast<std::uint8_t>(eighth);
-  return eighth < 4 ? 2 : 3;
+  std::uint8_t layer = 0;
+  while (!is_in_detail(number, layer)) ++layer;
+  return layer;
 }
 
-void make_grid_frame(const PublishedState& state, const FrameScale& scale, GridFrame& frame) {
+void make_grid_frame(const PublishedState& state, const FrameScale& scale, std::uint8_t detail,
+                     GridFrame& frame) {
+  VAT_CHECK(detail <= kFullDetail);
   VAT_CHECK(scale.grid.quantum > 0 && std::isfinite(scale.grid.quantum));
   frame.header = state.header;
   frame.scale = scale;
-  frame.detail = kFullDetail;
+  frame.detail = detail;
   frame.has_region = false;
   const std::size_t vats = state.has_vat ? 1 : 0;
   frame.blocks.resize(vats + state.bodies.size());
@@ -165,11 +199,15 @@ void make_grid_frame(const PublishedState& state, const FrameScale& scale, GridF
     GridBlock& block = frame.blocks[vats + b];
     begin_block(body.id, static_cast<GridBlock::Kind>(body.kind), block);
     if (block.has_particles()) {
-      place_particles(body, scale, block);
+      place_particles(body, detail, scale, block);
     } else {
       place_rigid(body, scale.grid, block);
     }
   }
+}
+
+void make_grid_frame(const PublishedState& state, const FrameScale& scale, GridFrame& frame) {
+  make_grid_frame(state, scale, kFullDetail, frame);
 }
 
 void select_particles(const GridFrame& all, const FrameSelection& selection, GridFrame& part) {

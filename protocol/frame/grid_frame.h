@@ -49,8 +49,6 @@ struct FrameSelection {
   std::optional<FrameRegion> region;  ///< only particles inside or on the boundary; absent: all
 
   bool operator==(const FrameSelection&) const = default;
-
-  bool is_all() const { return detail == kFullDetail && !region; }
 };
 
 /// Quantised data of one body. The encoder and all decoders store the same integers.
@@ -96,6 +94,10 @@ void drop_plain_numbers(std::size_t count, std::vector<std::uint32_t>& numbers);
 /// Positions outside the grid are moved to the edge of the grid. Attributes are limited to 2^20
 /// quanta in magnitude.
 void make_grid_frame(const PublishedState& state, const FrameScale& scale, GridFrame& frame);
+/// Writes only the particles of this level of detail, as select_particles(). Takes less time, which
+/// is in proportion to the number of these particles.
+void make_grid_frame(const PublishedState& state, const FrameScale& scale, std::uint8_t detail,
+                     GridFrame& frame);
 /// Writes the selected part of the frame `all` to `part`, and reuses the memory of `part`. The
 /// arguments must be different objects.
 void select_particles(const GridFrame& all, const FrameSelection& selection, GridFrame& part);

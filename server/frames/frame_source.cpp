@@ -79,10 +79,11 @@ std::shared_ptr<const GridFrame> FrameSource::frame(const FrameCut& cut) {
   if (known != nullptr) return known;
   const std::shared_ptr<GridFrame> quantised = pool_.take();
   VAT_CHECK(quantised != nullptr);
-  if (cut.selection().is_all()) {
-    make_grid_frame(state_, scale(cut), *quantised);
+  const FrameSelection selection = cut.selection();
+  if (selection.region) {
+    select_particles(*frame(cut.of_all()), selection, *quantised);
   } else {
-    select_particles(*frame(cut.of_all()), cut.selection(), *quantised);
+    make_grid_frame(state_, scale(cut), selection.detail, *quantised);
   }
   return frames_[cut] = quantised;
 }

@@ -49,6 +49,23 @@ export interface SessionOptions extends ConnectionOptions {
    * session's value.
    */
   errorInRadii?: number;
+  /**
+   * The greatest number of particles of liquid and deformable bodies in a frame: frames of larger
+   * scenes have a lower level of detail. By default, frames have all particles.
+   */
+  mostParticles?: number;
+}
+
+/** The greatest level of detail. Each lower level halves the particles. */
+const kFullDetail = 3;
+
+/** Returns the greatest level of detail with at most this number of particles, or 0. */
+function detailFor({ bodies }: SessionDescription, mostParticles: number): number {
+  let count = 0;
+  for (const { kind, particles } of bodies) if (kind !== 'rigid') count += particles;
+  let detail = kFullDetail;
+  while (detail > 0 && count / 2 ** (kFullDetail - detail) > mostParticles) detail -= 1;
+  return detail;
 }
 
 const kSilent = 'the server does not answer; it is busy, or the connection is slow';
@@ -67,6 +84,7 @@ export class Session {
   private resume: string | undefined;
   /** The maximum position error of the subscription [m]; undefined: the session's value. */
   private maxError: number | undefined;
+  private detail = kFullDetail;
   private attributes: Attributes = {};
 
   constructor(
@@ -126,7 +144,7 @@ export class Session {
     this.subscribeAgain();
   }
 
-  /** Requests the newest frame in full detail, and resets the server's reduction for slow clients. */
+  /** Requests the newest frame in the greatest detail of the options, and resets the server's reduction for slow clients. */
   refresh(): void {
     this.subscribeAgain();
   }
@@ -134,6 +152,7 @@ export class Session {
   private async subscribe(): Promise<void> {
     await this.request('frames.subscribe', {
       ...(this.maxError !== undefined && { max_error: this.maxError }),
+      ...(this.detail < kFullDetail && { detail: this.detail }),
       ...(Object.keys(this.attributes).length > 0 && { attributes: this.attributes }),
     });
   }
@@ -148,9 +167,10 @@ export class Session {
     const { errorInRadii } = this.options;
     const radius = Math.min(...description.bodies.map((body) => body.radius));
     const isKnown = errorInRadii !== undefined && Number.isFinite(radius) && radius > 0;
-    const before = this.maxError;
+    const { maxError, detail } = this;
     this.maxError = isKnown ? errorInRadii * radius : undefined;
-    if (this.maxError !== before) this.subscribeAgain();
+    this.detail = detailFor(description, this.options.mostParticles ?? Infinity);
+    if (this.maxError !== maxError || this.detail !== detail) this.subscribeAgain();
   }
 
   private handleState(state: ConnectionState): void {

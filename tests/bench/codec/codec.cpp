@@ -9,6 +9,7 @@
 
 #include "server/cli/common/command.h"
 #include "tests/bench/codec/decode_times.h"
+#include "tests/bench/codec/many.h"
 #include "tests/bench/codec/measure.h"
 #include "tests/bench/codec/peers.h"
 #include "tests/bench/options.h"
@@ -45,10 +46,16 @@ struct DecoderRow {
   DecodeTimes times;
 };
 
+struct ManyRow {
+  std::string scene;
+  ManyResult result;
+};
+
 struct Results {
   std::vector<CodecRow> rows;
   std::vector<DecoderRow> decoders;
   std::vector<PeerRow> peers;
+  std::vector<ManyRow> many;
 };
 
 std::vector<CodecSetting> settings_of(Real share) {
@@ -73,6 +80,12 @@ void measure_decoders(const CodecScene& scene, const std::vector<GridFrame>& fra
 
 void measure_scene(const CodecScene& scene, const CodecOptions& options, Results& results) {
   const Recording recording = record(scene, options.threads);
+  if (scene.is_large) {
+    for (const ManyResult& each : measure_many(recording, scene.spacing / 64)) {
+      results.many.push_back({scene.name, each});
+    }
+    return;
+  }
   for (const Real share : {16, 64, 256}) {
     const std::vector<GridFrame> frames = on_grids(recording, scene.spacing / share);
     if (share == 64) {
@@ -143,6 +156,21 @@ Table to_table(const std::vector<DecoderRow>& rows) {
                           quantile(times.deltas, 0.9) / kMillisecond, nanoseconds(delta, particles),
                           key / kMillisecond, nanoseconds(key, particles), machine.commit,
                           machine.cpu});
+  }
+  return table;
+}
+
+Table to_table(const std::vector<ManyRow>& rows) {
+  const Machine machine = this_machine();
+  Table table{{"case", "detail", "particles", "bits per particle", "kbit/s", "quantise [ms]",
+               "encode [ms]", "sum [ms]", "decode [ms]", "commit", "cpu"},
+              {}};
+  for (const auto& [scene, r] : rows) {
+    const Real sum = r.quantise + r.encode;
+    table.rows.push_back({scene, std::uint64_t{r.detail}, std::uint64_t{r.particles},
+                          8 * r.bytes / static_cast<Real>(r.particles), 8e-3 * kFrameRate * r.bytes,
+                          r.quantise / kMillisecond, r.encode / kMillisecond, sum / kMillisecond,
+                          r.decode / kMillisecond, machine.commit, machine.cpu});
   }
   return table;
 }
@@ -226,6 +254,10 @@ Status write_codec_results(const Results& results, const std::string& folder) {
       !written) {
     return written;
   }
+  const Table many = to_table(results.many);
+  if (Status written = write_table(many, folder, "details", "# Levels of detail"); !written) {
+    return written;
+  }
   if (Status written = write_table(target_table(targets), folder, "targets", "# Targets");
       !written) {
     return written;
@@ -234,6 +266,7 @@ Status write_codec_results(const Results& results, const std::string& folder) {
             << to_markdown(table) << '\n'
             << to_markdown(decoders) << '\n'
             << to_markdown(to_table(results.peers)) << '\n'
+            << to_markdown(many) << '\n'
             << to_markdown(target_table(targets)) << "\nwritten to " << folder << '\n';
   return {};
 }
@@ -246,8 +279,11 @@ int codec(CodecOptions options) {
     print_names(names);
     return kExitOk;
   }
-  const Result<std::vector<std::size_t>> chosen = choose(options.cases, names);
+  Result<std::vector<std::size_t>> chosen = choose(options.cases, names);
   if (!chosen) return fail("codec", chosen.errors());
+  if (options.cases.empty()) {
+    std::erase_if(chosen.value(), [&](std::size_t index) { return scenes[index].is_large; });
+  }
   Results results;
   if (const std::string why = no_web_decoder(); options.times_web && !why.empty()) {
     std::cout << "no times of the decoder in TypeScript: " << why << '\n';

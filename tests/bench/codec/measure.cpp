@@ -1,28 +1,18 @@
 #include "tests/bench/codec/measure.h"
 
 #include <algorithm>
-#include <chrono>
 #include <deque>
 #include <random>
 #include <stdexcept>
 #include <utility>
 
 #include "protocol/frame/frame_domain.h"
+#include "tests/bench/codec/stopwatch.h"
 #include "tests/bench/codec/stream.h"
 #include "tests/bench/report/quantile.h"
 
 namespace vat::bench {
 namespace {
-
-class Stopwatch {
- public:
-  Real seconds() const {
-    return std::chrono::duration<Real>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 struct Samples {
   std::vector<Real> bytes;

@@ -58,6 +58,8 @@ std::vector<CodecScene> codec_scenes(bool quick) {
   CodecScene figure_2_asleep{"figure-2-asleep", figure_2_in_a_still_vat(), kPaperSpacing, 12, look};
   figure_2_asleep.scene.sleeping = Sleeping{};
   figure_2_asleep.rests = true;
+  CodecScene million = dam_break_of("dam-break-1m", quick ? 40 : 100, PressureSolver::tait, 0.3);
+  million.is_large = true;
   return {
       dam_break_of("dam-break-10k", quick ? 12 : 22, PressureSolver::tait, run),
       dam_break_of("dam-break-30k", quick ? 14 : 31, PressureSolver::tait, run),
@@ -69,6 +71,7 @@ std::vector<CodecScene> codec_scenes(bool quick) {
       {"figure-2", catalogue_scene("sliding-vat-liquid"), kPaperSpacing, 0, run},
       {"figure-2-settled", figure_2_in_a_still_vat(), kPaperSpacing, quick ? Real{8} : 40, look},
       std::move(figure_2_asleep),
+      std::move(million),
   };
 }
 

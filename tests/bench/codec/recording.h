@@ -12,10 +12,11 @@ namespace vat::bench {
 struct CodecScene {
   std::string name;
   Scene scene;
-  Real spacing = 0;    ///< [m] particle spacing
-  Real begin = 0;      ///< [s] simulated before the first frame
-  Real seconds = 0;    ///< recorded
-  bool rests = false;  ///< all bodies must sleep at the first frame
+  Real spacing = 0;       ///< [m] particle spacing
+  Real begin = 0;         ///< [s] simulated before the first frame
+  Real seconds = 0;       ///< recorded
+  bool rests = false;     ///< all bodies must sleep at the first frame
+  bool is_large = false;  ///< times of its levels of detail are measured, only if it is named
 };
 
 /// Frames per second.

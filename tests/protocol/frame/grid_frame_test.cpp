@@ -123,6 +123,28 @@ TEST(GridFrame, LayersHaveTheirShares) {
   }
 }
 
+TEST(GridFrame, ALevelOfDetailIsASelection) {
+  PublishedState state = liquid_state({});
+  PublishedState::Body& body = state.bodies[0];
+  for (std::uint32_t i = 0; i < 300; ++i) {
+    body.positions.emplace_back(i % 10, i / 10 % 10, i / 100);
+    body.numbers.push_back(2 * i + 1);
+    body.attributes[0].push_back(static_cast<float>(i));
+  }
+  FrameScale scale{make_frame_grid({0, 0, 0}, {9, 9, 9}, 0.01), {}};
+  scale.attribute_quanta[0] = 0.1;
+  GridFrame all;
+  make_grid_frame(state, scale, all);
+  for (std::uint8_t detail = 0; detail <= kFullDetail; ++detail) {
+    GridFrame part;
+    GridFrame selected;
+    make_grid_frame(state, scale, detail, part);
+    select_particles(all, {detail, {}}, selected);
+    EXPECT_TRUE(show_the_same(part, selected)) << int{detail};
+    EXPECT_EQ(part.blocks[0].particle_count(), part.blocks[0].attributes[0].size());
+  }
+}
+
 TEST(GridFrame, ASelectionHasItsParticlesAlone) {
   std::vector<Vec3> positions;
   for (int i = 0; i < 1000; ++i) positions.emplace_back(i % 10, i / 10 % 10, i / 100);

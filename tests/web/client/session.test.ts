@@ -96,6 +96,35 @@ describe('the error of positions', () => {
   });
 });
 
+describe('the level of detail', () => {
+  const subscribed = async (bodies: object[]): Promise<unknown> => {
+    session = newSession({ mostParticles: 1000 });
+    session.open();
+    const socket = await join({ ...kDescription, bodies });
+    return socket.sent.find((message) => message.method === 'frames.subscribe')?.params;
+  };
+  const body = (kind: string, particles: number) => ({ kind, particles, radius: 1 });
+
+  it.each([
+    [1000, undefined],
+    [1001, { detail: 2 }],
+    [2001, { detail: 1 }],
+    [4001, { detail: 0 }],
+    [100_000, { detail: 0 }],
+  ])('of %i particles has at most the given number', async (particles, params) => {
+    expect(await subscribed([body('liquid', particles)])).toEqual(params);
+  });
+
+  it('does not count the particles of rigid bodies, of which frames have the positions', async () => {
+    const params = await subscribed([
+      body('liquid', 500),
+      body('deformable', 501),
+      body('rigid', 5000),
+    ]);
+    expect(params).toEqual({ detail: 2 });
+  });
+});
+
 describe('a server that asks for a token', () => {
   const kToken = 'a'.repeat(22);
   const kResume = 'b'.repeat(22);

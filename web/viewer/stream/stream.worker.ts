@@ -15,6 +15,8 @@ import type { Entrance, FromWorker, Refusal, ToWorker } from './wire';
 
 /** 1/64 of the spacing; smaller errors are not visible. */
 const kErrorInRadii = 1 / 32;
+/** More particles would take the server longer than a frame; see `vat bench codec`. */
+const kMostParticles = 200_000;
 
 let session: Session | undefined;
 /** The recording that is shown in place of a session. */
@@ -47,6 +49,7 @@ function open(entrance: Entrance): void {
       now,
       probe: () => probe(entrance.url),
       errorInRadii: kErrorInRadii,
+      mostParticles: kMostParticles,
     },
     {
       onState: (state) => post({ type: 'state', state }),
