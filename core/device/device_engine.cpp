@@ -80,9 +80,11 @@ Status DeviceEngine::bind(std::shared_ptr<const Model> model) {
   const MethodKind kind = kind_of(*model);
   const std::size_t bytes = kind.bytes_for(*model);
   const opencl::Device& device = program_->device();
-  if (bytes > device.memory) {
+  const std::uint64_t used = *device.used_memory;
+  if (bytes > device.memory || used > device.memory - bytes) {
     return failed("the scene needs " + std::to_string(bytes) + " bytes on the device; " +
-                  device.name + " has " + std::to_string(device.memory));
+                  device.name + " has " + std::to_string(device.memory) + " bytes, of which " +
+                  std::to_string(used) + " are in use");
   }
   try {
     method_ = kind.make(*program_, std::move(model));

@@ -1,6 +1,7 @@
 #include "core/device/opencl/devices.h"
 
 #include <algorithm>
+#include <map>
 #include <mutex>
 
 namespace vat::opencl {
@@ -22,9 +23,17 @@ std::string text_of(const Api& api, cl_device_id device, cl_device_info what) {
   return text;
 }
 
+/// Returns the counter of Device::used_memory. The caller must hold the mutex of list_devices().
+std::atomic<std::uint64_t>& used_memory_of(cl_device_id id) {
+  // Never destroyed, because buffers can be destroyed at the end of the process.
+  static auto& counters = *new std::map<cl_device_id, std::atomic<std::uint64_t>>;
+  return counters[id];
+}
+
 Device describe(const Api& api, cl_device_id id) {
   Device device;
   device.id = id;
+  device.used_memory = &used_memory_of(id);
   device.name = text_of(api, id, CL_DEVICE_NAME);
   device.driver = text_of(api, id, CL_DEVICE_VENDOR) + ' ' + text_of(api, id, CL_DRIVER_VERSION);
   device.memory = number_of<cl_ulong>(api, id, CL_DEVICE_GLOBAL_MEM_SIZE);

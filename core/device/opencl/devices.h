@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -18,6 +19,8 @@ struct Device {
   std::string driver;                 ///< name of the platform and version of the driver
   std::uint64_t memory = 0;           ///< [bytes]
   std::uint64_t greatest_buffer = 0;  ///< [bytes]
+  /// Memory that the buffers of this process have [bytes]. Null if there are no buffers.
+  std::atomic<std::uint64_t>* used_memory = nullptr;
   std::uint32_t compute_units = 0;
   /// Particles whose sums over pairs a work-item computes in vectors: 16 on CPUs, 1 on others.
   std::uint32_t lanes = 1;

@@ -6,7 +6,7 @@
 
 namespace vat::opencl {
 
-Buffer::Buffer(const Program& program, std::size_t bytes) : program_(&program) {
+Buffer::Buffer(const Program& program, std::size_t bytes) : program_(&program), bytes_(bytes) {
   VAT_CHECK(bytes > 0);
   if (bytes > program.device().greatest_buffer) {
     throw DeviceFailure(program.device().name + " has no buffers of " + std::to_string(bytes) +
@@ -16,10 +16,13 @@ Buffer::Buffer(const Program& program, std::size_t bytes) : program_(&program) {
   memory_ = program.api_.create_buffer(program.compiled_->context(), CL_MEM_READ_WRITE, bytes,
                                        nullptr, &code);
   program.check(code, "the allocation of a buffer");
+  *program.device().used_memory += bytes;
 }
 
 Buffer::~Buffer() {
-  if (memory_ != nullptr) program_->api_.release_buffer(memory_);
+  if (memory_ == nullptr) return;
+  program_->api_.release_buffer(memory_);
+  *program_->device().used_memory -= bytes_;
 }
 
 Result<std::unique_ptr<Program>> Program::create(const Device& device, const std::string& source,

@@ -29,10 +29,13 @@ class Buffer {
   /// Throws DeviceFailure if the device has no memory left.
   Buffer(const Program& program, std::size_t bytes);
   Buffer(Buffer&& other) noexcept
-      : program_(other.program_), memory_(std::exchange(other.memory_, nullptr)) {}
+      : program_(other.program_),
+        memory_(std::exchange(other.memory_, nullptr)),
+        bytes_(other.bytes_) {}
   Buffer& operator=(Buffer&& other) noexcept {
     std::swap(program_, other.program_);
     std::swap(memory_, other.memory_);
+    std::swap(bytes_, other.bytes_);
     return *this;
   }
   ~Buffer();
@@ -42,6 +45,7 @@ class Buffer {
  private:
   const Program* program_ = nullptr;
   cl_mem memory_ = nullptr;
+  std::size_t bytes_ = 0;
 };
 
 class Program {

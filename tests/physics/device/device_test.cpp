@@ -317,6 +317,27 @@ TEST(Device, RefusesFeaturesThatItLacks) {
   expect_refusals(make_column(), cases);
 }
 
+TEST(Device, IsRefusedIfOtherScenesUseItsMemory) {
+  const opencl::Device device = opencl::find_device(0).value();
+  const std::uint64_t used = *device.used_memory;
+  {
+    Simulation simulation = Simulation::create(make_column()).value();
+    ASSERT_TRUE(use_device(parse_device("opencl").value(), simulation));
+    const std::uint64_t more = *device.used_memory - used;
+    EXPECT_GT(more, 300 * simulation.particle_count());  // see the table of DEVICE.md
+    const std::uint64_t free = device.memory - *device.used_memory;
+    *device.used_memory += free - more / 2;
+    Simulation other = Simulation::create(make_column()).value();
+    const Status status = use_device(parse_device("opencl").value(), other);
+    *device.used_memory -= free - more / 2;
+    ASSERT_FALSE(status);
+    EXPECT_EQ(status.errors()[0].code, "device_failed");
+    EXPECT_THAT(status.errors()[0].message, testing::HasSubstr("are in use"));
+    EXPECT_TRUE(use_device(parse_device("opencl").value(), other));
+  }
+  EXPECT_EQ(*device.used_memory, used);
+}
+
 // Each operation has 256 results.
 TEST(Device, IsRefusedIfItRoundsIncorrectly) {
   const opencl::Device device{.name = "Pocket", .driver = "ACME 1"};

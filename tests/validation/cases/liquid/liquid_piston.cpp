@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "protocol/scene/level.h"
 #include "protocol/scene/scene_json.h"
 #include "tests/validation/cases.h"
 
@@ -113,12 +114,14 @@ class PistonWaves {
   int samples_ = 0;
 };
 
-/// The tank of the catalogue without its boats, which displace water at the places of the samples.
+/// The tank of the catalogue at the level fine, without its boats, which displace water at the
+/// places of the samples. At the level normal, the error of the height is near the tolerance:
+/// from 4.4 to 5.9 % for starts that differ by rounding.
 Scene catalogue_tank() {
   const std::string path = VAT_SOURCE_DIR "/protocol/scenes/wave-tank.json";
   Result<Scene> read = read_scene_file(path);
   if (!read) throw std::invalid_argument(path + ": " + read.errors()[0].message);
-  Scene scene = std::move(read).value();
+  Scene scene = at_level(std::move(read).value(), Level::fine).value();
   std::erase_if(scene.bodies, [](const BodyDescription& body) {
     return body.kind == BodyKind::rigid && !body.fixed && !body.motion;
   });

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "tests/validation/cases.h"
 #include "tests/validation/cases/liquid/liquid_rest.h"
@@ -42,7 +43,21 @@ ParticleShape lattice_of(const Scene& scene) {
 
 constexpr Real kWave = 0.05;  // initial amplitude of the surface [m]
 
-Scene standing_wave(const std::string& name, int layers) {
+/// Particles of the solver gas move chaotically: the periods of runs whose starts differ by
+/// rounding have a standard deviation of 1.5 % with 30 layers. The mean over these starts has half
+/// of it.
+constexpr int kStarts = 4;
+
+/// Moves each particle by at most a millionth of the spacing, in another direction for each start.
+void shift_start(ParticleShape& shape, Real spacing, int start) {
+  for (std::size_t i = 0; i < shape.positions.size(); ++i) {
+    const Real angle = static_cast<Real>(start) * static_cast<Real>(i);
+    shape.positions[i] +=
+        1e-6 * spacing * start * Vec3(std::cos(angle), 0, std::sin(angle)) / kStarts;
+  }
+}
+
+Scene standing_wave(const std::string& name, int layers, int start) {
   Scene scene = load_scene(name);
   const Real depth = reference("/liquid/LIQ-12/H");
   set_spacing(scene, depth / layers);
@@ -57,6 +72,7 @@ Scene standing_wave(const std::string& name, int layers) {
     x += scale * Vec3(-std::cosh(std::numbers::pi * x.z()) * std::sin(std::numbers::pi * x.x()), 0,
                       std::sinh(std::numbers::pi * x.z()) * std::cos(std::numbers::pi * x.x()));
   }
+  shift_start(shape, depth / layers, start);
   scene.bodies[0].shape = shape;
   return with_step(scene, acoustic_step(scene, 0.01));
 }
@@ -65,19 +81,27 @@ void check_standing_wave(Sheet& sheet, const std::string& name, int layers) {
   const std::string at = "/liquid/LIQ-12/modes/1/";
   const std::string of = ", " + std::to_string(layers) + " layers";
   const bool tait = name == "LIQ-12-tait";
-  Run run = sheet.start(standing_wave(name, layers));
-  const Swing seen = observe_swing(run, 3.2, [&] { return center(run) - 0.5; });
+  const bool is_judged = tait || layers > 20;
+  const int starts = tait || !is_judged ? 1 : kStarts;
   const Real steepness = reference(at + "k") * kWave;
   const Real period = reference(at + "T") / (1 - 0.194641 * steepness * steepness / 2);
-  // Uses whole periods, since the rest position may be slightly off-centre.
-  sheet.add("period [s]" + of, period, (seen.zeros.at(4) - seen.zeros[0]) / 2,
-            tait          ? within_relative(0.01, "error of the best explicit solvers")
-            : layers > 20 ? within_relative(0.02, "published target")
-                          : reported("the layer at each wall is denser than the others"),
-            run);
-  const Real first = seen.extremes[1] + seen.extremes[2];
-  const Real last = seen.extremes[3] + seen.extremes[4];
-  const Real decay = std::log(first / last) / period;
+  Real measured = 0;
+  Real decay = 0;
+  std::optional<Run> last_run;
+  for (int start = 0; start < starts; ++start) {
+    Run& run = last_run.emplace(sheet.start(standing_wave(name, layers, start)));
+    const Swing seen = observe_swing(run, 3.2, [&] { return center(run) - 0.5; });
+    // Uses whole periods, since the rest position may be slightly off-centre.
+    measured += (seen.zeros.at(4) - seen.zeros[0]) / 2 / starts;
+    const Real first = seen.extremes[1] + seen.extremes[2];
+    const Real last = seen.extremes[3] + seen.extremes[4];
+    decay += std::log(first / last) / period / starts;
+  }
+  sheet.add("period [s]" + of, period, measured,
+            tait        ? within_relative(0.01, "error of the best explicit solvers")
+            : is_judged ? within_relative(0.02, "published target")
+                        : reported("the layer at each wall is denser than the others"),
+            *last_run);
   sheet.add(
       "viscosity from the decay [m2/s]" + of,
       reference(std::string("/measured_yardsticks/standing_wave/") +
@@ -85,7 +109,7 @@ void check_standing_wave(Sheet& sheet, const std::string& name, int layers) {
       decay / reference(at + "deep_decay_amp_rate_per_nu"),
       reported(
           "published result of the same method; its numerical viscosity exceeds the set viscosity"),
-      run);
+      *last_run);
 }
 
 void run_standing_wave(Sheet& sheet, const std::string& name) {
