@@ -74,6 +74,8 @@ Status DeviceEngine::adapt_program(const Scene& scene) {
 
 Status DeviceEngine::bind(std::shared_ptr<const Model> model) {
   method_.reset();  // before the allocation of new buffers
+  // The CPU takes the steps until the first particles enter.
+  if (model->liquid_count == 0 && !model->nozzles.empty()) return {};
   Errors missing = find_features_not_on_device(*model);
   if (!missing.empty()) return missing;
   if (Status adapted = adapt_program(model->scene); !adapted) return adapted;
@@ -95,7 +97,8 @@ Status DeviceEngine::bind(std::shared_ptr<const Model> model) {
 }
 
 Result<bool> DeviceEngine::advance(const EngineInput& input, std::uint32_t steps) {
-  VAT_CHECK(method_ != nullptr && steps > 0);
+  VAT_CHECK(steps > 0);
+  if (method_ == nullptr) return false;
   if (!input.controls.grabs.empty() || !input.controls.applied_forces.empty()) return false;
   try {
     return method_->take_steps(input, steps);

@@ -68,7 +68,6 @@ void Missing::check_body(std::size_t index) {
     reject(model_.bodies[index].material != model_.material[0], path + "/material",
            "must be the material of the other liquids");
   }
-  reject(body.melting.has_value(), path + "/melting", "must be absent");
   if (body.kind != BodyKind::rigid) return;
   reject(body.motion.has_value() && is_incompressible(), path + "/motion",
          "must be absent in a scene with an incompressible liquid");
@@ -87,8 +86,9 @@ void Missing::check_bodies() {
 }
 
 void Missing::check_world() {
-  reject(!scene_.emitters.empty(), "/emitters", "must be empty");
-  reject(!scene_.drains.empty(), "/drains", "must be empty");
+  const bool is_tait = model_.is_coupled && !model_.is_incompressible;
+  reject(!scene_.emitters.empty() && !is_tait, "/emitters",
+         "must be empty with a pressure solver other than tait");
   reject(scene_.sleeping.has_value(), "/sleeping", "must be absent");
 }
 
@@ -121,6 +121,10 @@ void Missing::check_liquid() {
          "must be absent in a scene with walls, solids or an incompressible liquid");
   reject(model_.is_filled && control == StepControl::adaptive, "/numerics/control",
          "must be fixed for a liquid that fills its world");
+  reject(model_.is_filled && !scene_.emitters.empty(), "/emitters",
+         "must be empty with a liquid that fills its world");
+  reject(may_solve_viscosity(model_) && !scene_.emitters.empty(), "/numerics/step",
+         "must resolve the viscosity of the liquid in a scene with emitters");
   if (!solids_move(model_)) return;
   check_motions();
   check_laws();

@@ -47,6 +47,29 @@ void SimulationImpl::melt_on_time(AdvanceReport& report) {
   report.bodies_changed = true;
 }
 
+bool SimulationImpl::bodies_change_at(std::uint64_t step) const {
+  if (!model->scene.drains.empty() && step % steps_per_tick() == 0) return true;
+  for (const ModelBody& body : model->bodies) {
+    if (body.melts_at <= step) return true;
+    if (model->nozzles.empty()) continue;
+    const auto is_out = [&](const NozzleParticle& each) { return each.free_from <= step; };
+    if (std::ranges::any_of(body.sample->in_nozzles, is_out)) return true;
+  }
+  const auto time_of = [&](std::uint64_t s) { return static_cast<Real>(s) * step_size(); };
+  for (std::size_t e = 0; e < model->nozzles.size(); ++e) {
+    const Nozzle& nozzle = model->nozzles[e];
+    const std::uint64_t before = step == 0 ? 0 : nozzle.entered(time_of(step - 1));
+    if (model->scene.emitters[e].open && nozzle.entered(time_of(step)) > before) return true;
+  }
+  return false;
+}
+
+std::uint32_t SimulationImpl::steps_until_change(std::uint32_t most) const {
+  std::uint32_t steps = 1;
+  while (steps < most && !bodies_change_at(state.step_count + steps)) ++steps;
+  return steps;
+}
+
 void SimulationImpl::change_bodies_on_time(AdvanceReport& report) {
   const bool may_flow = !model->nozzles.empty() || !model->scene.drains.empty();
   const bool may_melt = std::ranges::any_of(
@@ -73,6 +96,24 @@ bool SimulationImpl::take_nominal_step(AdvanceReport& report) {
 bool SimulationImpl::take_guarded_steps(std::uint32_t steps, AdvanceReport& report) {
   for (std::uint32_t s = 0; s < steps; ++s) {
     change_bodies_on_time(report);
+    if (!take_unchanged_steps(1, report)) return false;
+  }
+  return true;
+}
+
+bool SimulationImpl::take_parts(std::uint32_t steps, AdvanceReport& report) {
+  while (steps > 0) {
+    read_from_device();
+    change_bodies_on_time(report);
+    const std::uint32_t part = steps_until_change(steps);
+    if (!advance_on_device(part, report) && !take_unchanged_steps(part, report)) return false;
+    steps -= part;
+  }
+  return true;
+}
+
+bool SimulationImpl::take_unchanged_steps(std::uint32_t steps, AdvanceReport& report) {
+  for (std::uint32_t s = 0; s < steps; ++s) {
     if (model->scene.sleeping) sleep_and_wake();
     const bool all_sleep = sleepers && model->bodies.empty();
     if (!all_sleep && !take_nominal_step(report)) return false;
@@ -106,6 +147,8 @@ void SimulationImpl::undo_call() noexcept {
     state = call_start.content.state;
     stepper.forget();
   }
+  unread_steps = 0;
+  device_is_current = false;
 }
 
 void SimulationImpl::read_from_device() {
@@ -117,7 +160,7 @@ void SimulationImpl::read_from_device() {
   engine.reset();
   state.step_count -= steps;
   AdvanceReport repeated;
-  if (!take_guarded_steps(steps, repeated)) engine_error->message += "; the last steps are lost";
+  if (!take_unchanged_steps(steps, repeated)) engine_error->message += "; the last steps are lost";
 }
 
 Result<bool> SimulationImpl::fit_engine(AdvanceReport& report) {
@@ -161,12 +204,20 @@ AdvanceReport Simulation::advance(std::uint32_t steps) {
   VAT_CHECK(impl.model != nullptr);
   AdvanceReport report;
   const ObservedCall call(impl.observer);
-  if (impl.advance_on_device(steps, report)) return report;
+  const bool changes =
+      impl.engine != nullptr && steps > 0 &&
+      (impl.bodies_change_at(impl.state.step_count) || impl.steps_until_change(steps) < steps);
+  if (changes) {
+    impl.read_from_device();
+  } else if (impl.advance_on_device(steps, report)) {
+    return report;
+  }
   if (impl.engine_error) report.device_error = std::exchange(impl.engine_error, std::nullopt);
   impl.enter("keep_state");
   impl.begin_call();
   try {
-    report.failed = !impl.take_guarded_steps(steps, report);
+    report.failed =
+        !(changes ? impl.take_parts(steps, report) : impl.take_guarded_steps(steps, report));
   } catch (...) {  // out of memory
     impl.undo_call();
     throw;
@@ -179,6 +230,7 @@ AdvanceReport Simulation::advance(std::uint32_t steps) {
   std::erase_if(impl.controls.applied_forces, [&](const AppliedForce& applied) {
     return applied.end_step <= impl.state.step_count;
   });
+  if (impl.unread_steps > 0) return report;
   if (!impl.model->rigid_bodies.empty()) impl.enter("pose_rigid_bodies");
   impl.pose_rigid_particles();
   impl.show();

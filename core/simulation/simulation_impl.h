@@ -160,11 +160,23 @@ struct SimulationImpl : SimulationContent {
   void read_from_device();
   void begin_call();
   void undo_call() noexcept;
-  /// Performs the scheduled changes of bodies (melting and flow) of the next nominal step.
+  /// Returns whether scheduled changes of bodies (melting and flow) can be due before a nominal
+  /// step.
+  bool bodies_change_at(std::uint64_t step) const;
+  /// Returns the number of nominal steps before the next ones that are due after the present step,
+  /// at most `most`.
+  std::uint32_t steps_until_change(std::uint32_t most) const;
+  /// Performs the scheduled changes of bodies of the next nominal step.
   void change_bodies_on_time(AdvanceReport& report);
   void melt_on_time(AdvanceReport& report);
   void flow();
+  /// Takes nominal steps on the CPU. Returns whether no step has failed.
   bool take_guarded_steps(std::uint32_t steps, AdvanceReport& report);
+  /// Takes steps in which no changes of bodies are due, or before which they have been performed.
+  bool take_unchanged_steps(std::uint32_t steps, AdvanceReport& report);
+  /// Takes the steps between two changes of bodies by the engine if possible, and otherwise on the
+  /// CPU. Returns whether no step has failed.
+  bool take_parts(std::uint32_t steps, AdvanceReport& report);
   bool take_nominal_step(AdvanceReport& report);
 };
 

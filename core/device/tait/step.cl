@@ -27,6 +27,12 @@ kernel void move(const Parameters p, global double* position, global double* vel
              cell_counts, status);
 }
 
+// Removes the accelerations of particles in nozzles, which keep their velocities.
+kernel void hold_particles(int count, global const int* held, global float4* acceleration) {
+  const int n = get_global_id(0);
+  if (n < count) acceleration[held[n]] = 0;
+}
+
 // Kicks the particles at the end of the last step.
 kernel void finish(const Parameters p, global const double* position, global double* velocity,
                    global const float4* acceleration, global int* status) {

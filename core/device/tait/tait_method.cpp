@@ -16,6 +16,7 @@
 #include "core/device/liquid/device_surface.h"
 #include "core/device/solid/device_solids.h"
 #include "core/device/tait/device_liquid_integration.h"
+#include "core/device/tait/device_nozzles.h"
 #include "core/device/tait/device_transport.h"
 #include "core/device/tait/device_viscosity.h"
 #include "core/stepping/integrator.h"
@@ -96,6 +97,7 @@ class TaitMethod : public VerletMethod {
     if (model().cohesion) cohesion_.emplace(program, model());
     if (model().is_filled) transport_.emplace(program, model());
     if (has_viscosity_solve(model())) viscosity_.emplace(program, model());
+    if (DeviceNozzles::has_particles(model())) nozzles_.emplace(program, model());
   }
 
   void read(State& state) override;
@@ -144,6 +146,7 @@ class TaitMethod : public VerletMethod {
   std::optional<DeviceSurface> surface_;
   std::optional<DeviceCohesion> cohesion_;
   std::optional<DeviceTransport> transport_;  ///< only if the liquid fills its world
+  std::optional<DeviceNozzles> nozzles_;      ///< only if particles are in tubes
   std::optional<DeviceViscosity> viscosity_;  ///< only if a step may not resolve the viscosity
   ReadMotion read_;
   std::vector<Float4> accelerations_;
@@ -236,6 +239,7 @@ void TaitMethod::evaluate_liquid(const LiquidParameters& p) {
   if (surface_) surface_->add_forces(p, s, now_.acceleration);
   if (cohesion_) cohesion_->add_forces(p, s, now_.acceleration);
   if (transport_) transport_->add_forces(p, s, now_.acceleration);
+  if (nozzles_) nozzles_->hold(now_.acceleration);
 }
 
 void TaitMethod::evaluate(const StepMoment& start, Real end) {
@@ -377,7 +381,7 @@ std::size_t bytes_for_tait(const Model& model) {
   const LiquidGeometry geometry(model, guard_bounds(model));
   const bool moves = solids_move(model);
   return DeviceParticles::bytes_for(model, geometry, moves) +
-         2 * model.liquid_count * TaitState::kBytes +
+         2 * model.liquid_count * TaitState::kBytes + DeviceNozzles::bytes_for(model) +
          (keeps_forces(model) ? 0 : DeviceLiquidIntegration::bytes_for(model)) +
          (is_adaptive(model) ? AdaptiveSteps::bytes_for(model) : 0) +
          (model.has_surface_tension ? DeviceSurface::bytes_for(model) : 0) +

@@ -122,6 +122,31 @@ TEST(Engine, RepeatsUnreadStepsOnTheCpuIfTheDeviceIsLost) {
   EXPECT_EQ(simulation.state_hash(), hash_on_cpu(6));
 }
 
+// A layer enters before the first step, and has entered when the CPU repeats this step.
+TEST(Engine, RepeatsNoInflowIfTheDeviceIsLost) {
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
+  scene.materials = {make_liquid("water", 1000, {100, 0.1, 0.1})};
+  scene.bodies = {BodyDescription{"pool", BodyKind::liquid, "water",
+                                  BoxShape{Vec3::Zero(), {0.2, 0.2, 0.2}}, 0.05}};
+  Emitter tap;
+  tap.name = "tap";
+  tap.body = "pool";
+  tap.position = {0, 0, 0.3};
+  tap.radius = 0.05;
+  tap.speed = 0.1;
+  tap.most_particles = 1000;
+  scene.emitters = {tap};
+  Simulation cpu = make_advanced(scene, 5);
+  ASSERT_GT(cpu.diagnostics().emitted_particles, 0U);
+  Recorded record;
+  Simulation simulation = make_simulation(scene);
+  ASSERT_TRUE(simulation.set_engine(std::make_unique<FakeEngine>(record)).ok());
+  EXPECT_EQ(simulation.advance(3).device_steps, 3U);
+  simulation.advance(2);
+  record.is_lost = true;
+  EXPECT_EQ(simulation.state_hash(), cpu.state_hash());
+}
+
 TEST(Engine, IsRefusedWithTheErrorsOfTheScene) {
   Recorded record{.is_bindable = false};
   Simulation simulation = make_simulation(make_scene_of_test());

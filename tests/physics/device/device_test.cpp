@@ -300,18 +300,10 @@ TEST(Device, RefusesFeaturesThatItLacks) {
          fill_vat(s);
          s.numerics.control = StepControl::adaptive;
        }},
-      {"/emitters",
+      {"/numerics/step",
        [](Scene& s) {
-         s.emitters.push_back({.name = "tap",
-                               .body = "column",
-                               .position = {0.25, 0.06, 0.3},
-                               .radius = 0.03,
-                               .speed = 1,
-                               .most_particles = 2000});
-       }},
-      {"/drains",
-       [](Scene& s) {
-         s.drains.push_back({"hole", {0, 0, 0}, {0.1, 0.1, 0.1}});
+         s.materials[0].liquid->viscosity = 20;
+         s.emitters.push_back(make_tap_into("column"));
        }},
   };
   expect_refusals(make_column(), cases);

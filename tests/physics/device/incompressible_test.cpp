@@ -335,6 +335,7 @@ TEST(IncompressibleDevice, RefusesFeaturesThatItLacks) {
   const SceneCase cases[] = {
       {"/forces/pressure", [](Scene& s) { s.forces.pressure = false; }},
       {"/numerics/control", [](Scene& s) { s.numerics.control = StepControl::local; }},
+      {"/emitters", [](Scene& s) { s.emitters.push_back(make_tap_into(s.bodies[0].name)); }},
       {"/central_field",
        [](Scene& s) {
          s.vat.reset();

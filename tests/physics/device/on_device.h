@@ -96,6 +96,18 @@ inline void expect_motion_with_other_integrators(Scene scene, std::uint32_t step
   }
 }
 
+/// Returns an emitter in the free part of a vat of 0.3 x 0.12 x 0.4 m.
+inline Emitter make_tap_into(const std::string& body) {
+  Emitter tap;
+  tap.name = "tap";
+  tap.body = body;
+  tap.position = {0.22, 0.06, 0.1};
+  tap.size = {{0.08, 0.08}};
+  tap.speed = 1;
+  tap.most_particles = 1000;
+  return tap;
+}
+
 /// Returns a fixed rigid body of the material "stone".
 inline BodyDescription make_fixed(const std::string& name, const Shape& shape, Real spacing) {
   BodyDescription body{name, BodyKind::rigid, "stone", shape, spacing};
