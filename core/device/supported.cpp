@@ -59,9 +59,6 @@ void Missing::check_body(std::size_t index) {
   const BodyDescription& body = scene_.bodies[index];
   const std::string path = "/bodies/" + std::to_string(index);
   const bool has_liquid = model_.liquid_count > 0;
-  const bool is_fixed = body.kind == BodyKind::rigid && body.fixed;
-  reject(is_incompressible() && body.kind != BodyKind::liquid && !is_fixed, path + "/kind",
-         "must be liquid, or rigid and fixed, in a scene with an incompressible liquid");
   reject(!has_liquid && body.kind == BodyKind::liquid, path + "/kind",
          "must be deformable or rigid in a scene whose liquids have no particles");
   if (body.kind == BodyKind::liquid && model_.is_coupled) {
@@ -69,8 +66,6 @@ void Missing::check_body(std::size_t index) {
            "must be the material of the other liquids");
   }
   if (body.kind != BodyKind::rigid) return;
-  reject(body.motion.has_value() && is_incompressible(), path + "/motion",
-         "must be absent in a scene with an incompressible liquid");
   reject(body.motion.has_value() && !body.angular_velocity.isZero(0), path + "/angular_velocity",
          "must be 0 for a driven body");
   reject(body.axle.has_value(), path + "/axle", "must be absent");
@@ -110,9 +105,10 @@ void Missing::check_liquid() {
   reject(control == StepControl::local, "/numerics/control", "must be fixed or adaptive");
   reject(control == StepControl::adaptive && solids_move(model_), "/numerics/control",
          "must be fixed in a scene with bodies that can move");
-  reject(may_solve_viscosity(model_) &&
-             (is_incompressible() ? control == StepControl::adaptive : solids_move(model_)),
-         "/numerics/step", "must resolve the viscosity of the liquid");
+  const bool is_explicit =
+      solids_move(model_) || (is_incompressible() && control == StepControl::adaptive);
+  reject(is_explicit && may_solve_viscosity(model_), "/numerics/step",
+         "must resolve the viscosity of the liquid and the damping of bodies");
   reject(is_incompressible() && model_.has_surface_tension, "/materials",
          "must have no surface tension with the pressure solver incompressible");
   reject(scene_.central_field && (is_incompressible() || !model_.walls.empty() ||
@@ -143,7 +139,8 @@ void Missing::check_laws() {
 }
 
 void Missing::check_motions() {
-  reject(scene_.numerics.integrator != IntegratorId::velocity_verlet &&
+  // An incompressible liquid requires symplectic Euler, and has its own steps.
+  reject(scene_.numerics.integrator != IntegratorId::velocity_verlet && !is_incompressible() &&
              std::ranges::any_of(scene_.bodies, has_motion),
          "/numerics/integrator", "must be velocity_verlet for driven bodies");
 }

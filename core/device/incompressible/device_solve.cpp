@@ -2,8 +2,11 @@
 
 #include <algorithm>
 
+#include "core/device/incompressible/device_pushes.h"
+#include "core/device/solid/solid_geometry.h"
 #include "core/liquid/incompressible/solve_limits.h"
 #include "core/liquid/pairs/coupled_pairs.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
@@ -11,6 +14,11 @@ namespace {
 using opencl::Program;
 
 constexpr int kNextIterations = 4;  // in further batches, if a solve needs more than expected
+
+std::size_t bytes_of_sums(const Model& model) {
+  const std::size_t bodies = solids_move(model) ? model.rigid_bodies.size() : 0;
+  return bytes_of_partial(model.particle_count) + bodies * sizeof(Double4);
+}
 
 }  // namespace
 
@@ -30,8 +38,11 @@ SolveParameters solve_parameters(const Model& model) {
   p.left_alone = room.left_alone;
   p.removal = room.removal;
   p.max_expansion = kMaxExpansion;
+  p.push_factor = -2 * slope_factor(model, liquid) * p.volume;
+  p.slope_scale = liquid.slope_scale;
   p.count = static_cast<std::int32_t>(model.liquid_count);
   p.slots = static_cast<std::int32_t>(model.particle_count);
+  p.free = static_cast<std::int32_t>(SolidRange(model).free);
   return p;
 }
 
@@ -53,7 +64,7 @@ DeviceSolve::DeviceSolve(Program& program, const Model& model)
       x(program, model.particle_count * sizeof(double)),
       excess(program, model.particle_count * sizeof(double)),
       gradient(program, model.particle_count * sizeof(double)),
-      partial(program, bytes_of_partial(model.particle_count)),
+      partial(program, bytes_of_sums(model)),
       progress(program, sizeof(SolveProgress)),
       program_(program),
       slots_(model.particle_count),
@@ -66,21 +77,35 @@ DeviceSolve::DeviceSolve(Program& program, const Model& model)
 std::size_t DeviceSolve::bytes_for(const Model& model) {
   const std::size_t n = model.particle_count;
   return n * (5 * sizeof(double) + sizeof(Float4) + sizeof(float)) +
-         slots_in_lanes(n) * 2 * sizeof(Float4) + bytes_of_partial(n) + sizeof(SolveProgress);
+         slots_in_lanes(n) * 2 * sizeof(Float4) + bytes_of_sums(model) + sizeof(SolveProgress);
+}
+
+void DeviceSolve::accelerate(const LiquidParameters& p, const SolveParameters& solve,
+                             const DeviceParticles& s, DevicePushes* pushes) {
+  // Without moving solids, the kernel does not use their buffers.
+  const opencl::Buffer& mobility = pushes != nullptr ? pushes->mobility() : product_;
+  const opencl::Buffer& push = pushes != nullptr ? pushes->push() : product_;
+  program_.run_in_lanes("accelerate", slots_, p, solve, progress, s.cells.begins, s.order,
+                        s.sorted_place, s.neighbour_counts, s.plain_counts, s.neighbours, charge_,
+                        mobility, push, solve_motion, partial);
+  std::int32_t sums = groups_;
+  if (pushes != nullptr) {
+    pushes->accelerate_bodies(solve, s, groups_, progress, solve_motion, partial);
+    sums += pushes->bodies();
+  }
+  program_.run("find_length", Program::kGroup, solve, sums, partial, progress);
 }
 
 void DeviceSolve::iterate(const LiquidParameters& p, const SolveParameters& solve,
-                          const DeviceParticles& s) {
+                          const DeviceParticles& s, DevicePushes* pushes) {
   constexpr std::size_t kOne = Program::kGroup;
   for (const std::int32_t is_restart : {0, 1}) {
     program_.run("follow", slots_, solve.slots, is_restart, progress, x, excess, gradient,
                  direction_, charge_, partial);
     program_.run("find_slope", kOne, groups_, is_restart, partial, progress);
   }
-  program_.run_in_lanes("accelerate", slots_, p, solve, progress, s.cells.begins, s.sorted_place,
-                        s.neighbour_counts, s.plain_counts, s.neighbours, charge_, solve_motion,
-                        partial);
-  program_.run("find_length", kOne, solve, groups_, partial, progress);
+  accelerate(p, solve, s, pushes);
+  if (pushes != nullptr) pushes->add(solve, progress);
   program_.run_in_lanes("compress", slots_, p, solve, progress, s.cells.begins, s.sorted_place,
                         s.neighbour_counts, s.plain_counts, s.neighbours, solve_motion, product_);
   program_.run("take_step", slots_, solve, progress, s.sorted_place, squares, direction_, product_,
@@ -89,14 +114,17 @@ void DeviceSolve::iterate(const LiquidParameters& p, const SolveParameters& solv
 }
 
 SolveReport DeviceSolve::solve(const LiquidParameters& p, const SolveParameters& solve,
-                               const DeviceParticles& particles, int expected) {
+                               const DeviceParticles& particles, DevicePushes* pushes,
+                               int expected) {
+  VAT_CHECK((pushes != nullptr) == (solve.solids_move != 0));
+  if (pushes != nullptr) pushes->begin();
   program_.run("end_iteration", Program::kGroup, solve, groups_, std::int32_t{1}, partial,
                progress);
   SolveProgress read;
   int batch = std::max(1, expected);
   do {
     // Iterations after the end of a solve have no effect.
-    for (int n = 0; n < batch; ++n) iterate(p, solve, particles);
+    for (int n = 0; n < batch; ++n) iterate(p, solve, particles, pushes);
     read = read_progress();
     batch = kNextIterations;
   } while (read.is_open != 0);

@@ -36,9 +36,13 @@ struct SolveParameters {
   double left_alone;
   double removal;
   double max_expansion;  ///< kMaxExpansion
+  double push_factor;    ///< force on a solid particle / (its weight times sum over pairs)
+  double slope_scale;    ///< LiquidModel::slope_scale
   std::int32_t most_iterations;
-  std::int32_t count;  ///< liquid particles
-  std::int32_t slots;  ///< liquid and solid particles
+  std::int32_t count;        ///< liquid particles
+  std::int32_t slots;        ///< liquid and solid particles
+  std::int32_t free;         ///< free solid particles
+  std::int32_t solids_move;  ///< 1: the solve moves solids
 };
 
 /// The struct Progress of solve.cl, with the same members in the same order.
@@ -58,6 +62,8 @@ struct SolveProgress {
   std::int32_t is_last;
 };
 
+class DevicePushes;
+
 /// Returns the parameters that do not depend on the step, for a model with one liquid.
 SolveParameters solve_parameters(const Model& model);
 void set_limits(const SolveLimits& limits, SolveParameters& parameters);
@@ -72,9 +78,9 @@ class DeviceSolve {
 
   /// Iterates from the unknowns and excesses that begin_projection or begin_shift has computed. The
   /// sum `whole` of accelerations is then that of the change of x. `expected` is the expected
-  /// number of iterations.
+  /// number of iterations. `pushes` must be null if and only if the solve moves no solids.
   SolveReport solve(const LiquidParameters& p, const SolveParameters& solve,
-                    const DeviceParticles& particles, int expected);
+                    const DeviceParticles& particles, DevicePushes* pushes, int expected);
   /// Computes and returns the excess density from the partial sums of find_density. The number of
   /// iterations is 0.
   SolveReport measure_excess();
@@ -88,7 +94,9 @@ class DeviceSolve {
 
  private:
   void iterate(const LiquidParameters& p, const SolveParameters& solve,
-               const DeviceParticles& particles);
+               const DeviceParticles& particles, DevicePushes* pushes);
+  void accelerate(const LiquidParameters& p, const SolveParameters& solve,
+                  const DeviceParticles& particles, DevicePushes* pushes);
   SolveProgress read_progress();
 
   opencl::Program& program_;

@@ -8,9 +8,12 @@
 
 #include "core/damping/damping_solve.h"
 #include "core/device/common/device_motion.h"
+#include "core/device/common/verlet_method.h"
+#include "core/device/incompressible/device_pushes.h"
 #include "core/device/incompressible/device_solve.h"
 #include "core/device/liquid/device_particles.h"
 #include "core/device/liquid/device_step_control.h"
+#include "core/device/solid/device_solids.h"
 #include "core/device/tait/device_viscosity.h"
 #include "core/liquid/incompressible/solve_limits.h"
 #include "core/stepping/control/step_control.h"
@@ -63,13 +66,15 @@ class IncompressibleMethod : public DeviceMethod {
         model_(std::move(model)),
         geometry_(geometry),
         parameters_(solve_parameters(*model_)),
-        particles_(program, *model_, geometry),
+        solids_(make_moving_solids(program, *model_)),
+        particles_(program, *model_, geometry, moving_particles(solids_.get())),
         solve_(program, *model_),
         now_(program, model_->liquid_count),
         start_(program, model_->liquid_count) {
     if (model_->scene.numerics.control == StepControl::adaptive) {
       control_.emplace(program, *model_, solve_.partial);
     }
+    if (solids_) pushes_.emplace(program, *model_, *solids_);
     if (needs_viscosity_solve(*model_)) viscous_.emplace(program, *model_);
   }
 
@@ -78,6 +83,11 @@ class IncompressibleMethod : public DeviceMethod {
 
  private:
   void upload(const State& state);
+  /// Saves the present state, or returns to the saved one.
+  void save();
+  void restore();
+  /// Finds which bodies are held in `step`, if solids move.
+  void release(std::uint64_t step);
   void copy(const IncompressibleState& from, IncompressibleState& to);
   /// Enters the particles into their cells by the kernel `name`, and finds their neighbours and
   /// densities.
@@ -86,6 +96,9 @@ class IncompressibleMethod : public DeviceMethod {
   /// Finds the densities of the present positions at `time`.
   void find_density_at(Real time);
   void find_acceleration(const LiquidParameters& p, const Buffer& acceleration);
+  /// Finds the densities and the forces on solids at the start of a step. Kicks the solids.
+  void begin_step_of_solids(const StepPart& step);
+  DevicePushes* pushes() { return pushes_ ? &*pushes_ : nullptr; }
   /// Returns whether the state after the step is valid.
   bool take_step(const StepPart& step, AdvanceReport& report);
   void project_velocities(const StepPart& step, AdvanceReport& report);
@@ -102,14 +115,17 @@ class IncompressibleMethod : public DeviceMethod {
   const std::shared_ptr<const Model> model_;
   const LiquidGeometry geometry_;
   const SolveParameters parameters_;
+  const std::unique_ptr<DeviceSolids> solids_;  ///< null if all solids are at rest
   DeviceParticles particles_;
   DeviceSolve solve_;
   IncompressibleState now_;
   IncompressibleState start_;                 ///< state before a call, for a failed step
   std::optional<DeviceStepControl> control_;  ///< only with adaptive steps
   StepHistory history_;
+  StepHistory saved_history_;
+  std::optional<DevicePushes> pushes_;    ///< only if solids move
   std::optional<ViscousLiquid> viscous_;  ///< only if steps do not resolve the viscosity
-  VolumeReport report_;                   ///< of the last step
+  VolumeReport report_, saved_report_;    ///< of the last step
   int shift_iterations_ = 0;              ///< of the last solve for positions
   ReadMotion read_;
   std::vector<Real> pressures_;
@@ -122,6 +138,9 @@ void IncompressibleMethod::upload(const State& state) {
   program_.write(now_.pressure, std::span<const Real>(state.now.pressure));
   report_ = state.volume;
   history_ = state.history;
+  if (!solids_) return;
+  solids_->write(state);
+  pushes_->find_mobilities(*model_, state.step_count);
 }
 
 void IncompressibleMethod::read(State& state) {
@@ -129,10 +148,34 @@ void IncompressibleMethod::read(State& state) {
   pressures_.resize(n);
   read_.read(program_, now_.motion, n);
   program_.read(now_.pressure, std::span(pressures_));
+  if (solids_) solids_->read();
   read_.copy_to(state.now);
   state.now.pressure.swap(pressures_);
   state.volume = report_;
   state.history = history_;
+  if (!solids_) return;
+  state.forces.particle.resize(model_->particle_count);
+  solids_->copy_to(state);
+}
+
+void IncompressibleMethod::save() {
+  copy(now_, start_);
+  saved_report_ = report_;
+  saved_history_ = history_;
+  if (solids_) solids_->save();
+}
+
+void IncompressibleMethod::restore() {
+  copy(start_, now_);
+  report_ = saved_report_;
+  history_ = saved_history_;
+  if (solids_) solids_->restore();
+}
+
+void IncompressibleMethod::release(std::uint64_t step) {
+  if (!solids_) return;
+  solids_->release(step);
+  pushes_->find_mobilities(*model_, step);
 }
 
 void IncompressibleMethod::copy(const IncompressibleState& from, IncompressibleState& to) {
@@ -184,13 +227,30 @@ void IncompressibleMethod::kick(const LiquidParameters& p, const SolveParameters
                viscous_->acceleration, now_.motion.velocity, solve_.solve_motion);
 }
 
+void IncompressibleMethod::begin_step_of_solids(const StepPart& step) {
+  solids_->move({step.start, 0, 0, 0, 0}, step.start, step.length, particles_.counters.buffer);
+  // Walls have moved solids since the last densities, and their velocities have changed.
+  find_density_at(step.start);
+  const LiquidParameters p = geometry_.at(*model_, {step.start, 0, 0, 0, 0});
+  particles_.find_solid_pressure(p);
+  solids_->find_forces(step.start);
+  particles_.add_forces_on_solids(p, solids_->force());
+  solids_->gather();
+  solids_->kick_euler_step(step.length);
+}
+
 void IncompressibleMethod::project_velocities(const StepPart& step, AdvanceReport& report) {
   const LiquidParameters p = geometry_.at(*model_, {step.start, 0, 0, 0, 0});
   DeviceParticles& s = particles_;
   const std::size_t n = s.count();
-  s.find_solid_pressure(p);
+  if (solids_) {
+    begin_step_of_solids(step);
+  } else {
+    s.find_solid_pressure(p);
+  }
   SolveParameters solve = parameters_;
   solve.dt = step.length;
+  solve.solids_move = solids_ ? 1 : 0;
   const Vec3 wall_velocity = mean_wall_velocity(*model_, step.start, step.length);
   for (int k = 0; k < 3; ++k) {
     solve.wall_velocity[k] = wall_velocity[k];
@@ -198,13 +258,15 @@ void IncompressibleMethod::project_velocities(const StepPart& step, AdvanceRepor
   }
   set_limits(velocity_limits(model_->scene.incompressible), solve);
   kick(p, solve, report);
+  if (solids_) pushes_->see_solids(p, solve, s, solve_.solve_motion, solve_.squares);
   program_.run_in_lanes("begin_projection", n, p, solve, s.cells.begins, s.order, s.sorted_place,
                         s.neighbour_counts, s.plain_counts, s.neighbours, solve_.solve_motion,
                         s.density, solve_.squares, now_.pressure, solve_.x, solve_.excess,
                         solve_.gradient, solve_.whole, solve_.partial);
-  report_.velocities = solve_.solve(p, solve, s, report_.velocities.iterations);
+  report_.velocities = solve_.solve(p, solve, s, pushes(), report_.velocities.iterations);
   program_.run("end_projection", n, solve, solve_.progress, s.order, particles_.density, solve_.x,
                solve_.whole, now_.pressure, now_.motion.velocity);
+  if (solids_) pushes_->kick(solve, solve_.progress);
 }
 
 void IncompressibleMethod::correct_density(LiquidParameters p) {
@@ -221,22 +283,28 @@ void IncompressibleMethod::correct_density(LiquidParameters p) {
     SolveParameters solve = parameters_;
     solve.dt = 1;  // shifts take no time
     set_limits(place_limits(wanted, report.mean <= wanted.density_tolerance), solve);
+    if (solids_) {
+      pushes_->see_solids(p, solve, particles_, solve_.solve_motion, solve_.squares);
+    }
     program_.run("begin_shift", n, solve, particles_.sorted_place, particles_.density,
                  solve_.squares, solve_.x, solve_.excess, solve_.gradient, solve_.whole,
                  solve_.partial);
-    shift_iterations_ = solve_.solve(p, solve, particles_, shift_iterations_).iterations;
+    shift_iterations_ = solve_.solve(p, solve, particles_, nullptr, shift_iterations_).iterations;
     iterations += shift_iterations_;
     program_.run("shift_places", n, solve, particles_.order, solve_.whole, now_.motion.position);
   }
 }
 
 bool IncompressibleMethod::take_step(const StepPart& step, AdvanceReport& report) {
+  const Buffer& counters = particles_.counters.buffer;
   project_velocities(step, report);
+  if (solids_) solids_->drift_euler_step(step.start, step.end, step.length, counters);
   LiquidParameters p = geometry_.at(*model_, {step.end, 0, 0, step.length, 0});
   p.greatest_speed2 = geometry_.greatest_speed2(step.length);
   correct_density(p);
   program_.run("check", model_->liquid_count, p, now_.motion.position, now_.motion.velocity,
-               particles_.counters.buffer);
+               counters);
+  if (solids_) solids_->end_euler_step(step.end, step.length, counters);
   report.iterations.velocities += static_cast<std::uint64_t>(report_.velocities.iterations);
   report.iterations.places += static_cast<std::uint64_t>(report_.places.iterations);
   report.count_evaluation(model_->particle_count);
@@ -290,23 +358,21 @@ bool IncompressibleMethod::take_steps(const EngineInput& input, std::uint32_t st
   particles_.counters.clear();
   if (!input.continues) {
     upload(state);
-    find_density_at(time(0));
+    if (!solids_) find_density_at(time(0));
   }
-  copy(now_, start_);
-  const VolumeReport report_before = report_;
-  const StepHistory history_before = history_;
+  save();
   AdvanceReport report = input.report;
   bool is_sound = true;
   for (std::uint32_t s = 0; s < steps && is_sound; ++s) {
+    if (releases_body(*model_, state.step_count + s)) release(state.step_count + s);
     is_sound = take_nominal_step({time(s), time(s + 1), dt}, report);
     now_.motion.wrap_liquid(*model_);
   }
   if (!is_sound) {
-    copy(start_, now_);
-    report_ = report_before;
-    history_ = history_before;
+    restore();
     return false;
   }
+  if (solids_) solids_->count_work(report);
   report.wall_stops += static_cast<std::uint64_t>(particles_.counters.read().stops);
   input.report = std::move(report);
   return true;
@@ -316,9 +382,11 @@ bool IncompressibleMethod::take_steps(const EngineInput& input, std::uint32_t st
 
 std::size_t bytes_for_incompressible(const Model& model) {
   const LiquidGeometry geometry(model, guard_bounds(model));
-  return DeviceParticles::bytes_for(model, geometry) + DeviceSolve::bytes_for(model) +
+  const bool moves = solids_move(model);
+  return DeviceParticles::bytes_for(model, geometry, moves) + DeviceSolve::bytes_for(model) +
          DeviceStepControl::bytes_for(model) +
          2 * model.liquid_count * IncompressibleState::kBytes +
+         (moves ? DeviceSolids::bytes_for(model) + DevicePushes::bytes_for(model) : 0) +
          (needs_viscosity_solve(model) ? ViscousLiquid::bytes_for(model) : 0);
 }
 

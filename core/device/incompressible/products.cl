@@ -75,7 +75,8 @@ typedef float Charge;
 #define VALUE_OF(charge) charge
 #endif
 
-// The accelerations by the charges, divided by -acceleration_factor.
+// The accelerations by the charges, divided by -acceleration_factor. The charge of a solid is 0, so that
+// it receives the sum over the charges of the liquid.
 float3 push_of(const Parameters* p, int slot, global const int* begins,
                global const int4* sorted_place, global const int* counts,
                global const uint* lists, global const Charge* charge) {
@@ -95,8 +96,8 @@ float3 push_of(const Parameters* p, int slot, global const int* begins,
 }
 
 #if LANES > 1
-// Finds the results of push_of() for LANES slots from `first` on, except of solids.
-void find_pushes(const Parameters* p, int first, global const int* begins,
+// Finds the results of push_of() for LANES slots from `first` on, those of solids only if they move.
+void find_pushes(const Parameters* p, int solids_move, int first, global const int* begins,
                  global const int4* sorted_place, global const int* counts,
                  global const int* plain_counts, global const uint* lists,
                  global const Charge* charge, float3* pushes) {
@@ -123,16 +124,17 @@ void find_pushes(const Parameters* p, int first, global const int* begins,
   vstore16(z, 0, all[2]);
   for (int lane = 0; lane < LANES && first + lane < p->count + p->solids; ++lane) {
     pushes[lane] = (float3)(all[0][lane], all[1][lane], all[2][lane]);
-    if (counts[first + lane] <= p->list_length || is_solid(sorted_place[first + lane])) continue;
+    if (counts[first + lane] <= p->list_length) continue;
+    if (is_solid(sorted_place[first + lane]) && !solids_move) continue;
     pushes[lane] = push_of(p, first + lane, begins, sorted_place, counts, lists, charge);
   }
 }
 #else
-void find_pushes(const Parameters* p, int first, global const int* begins,
+void find_pushes(const Parameters* p, int solids_move, int first, global const int* begins,
                  global const int4* sorted_place, global const int* counts,
                  global const int* plain_counts, global const uint* lists,
                  global const Charge* charge, float3* pushes) {
-  if (is_solid(sorted_place[first])) return;
+  if (is_solid(sorted_place[first]) && !solids_move) return;
   pushes[0] = push_of(p, first, begins, sorted_place, counts, lists, charge);
 }
 #endif

@@ -1,6 +1,6 @@
 // Solves over the particles of an incompressible liquid, for pressures times dt^2. The names are
 // those of core/liquid/incompressible/complementarity.h and pressure_response.h. All vectors are by
-// slot, with zeros for solids.
+// slot. Those of unknowns have zeros for solids. The part of moving solids is in solids.cl.
 
 typedef struct {
   double wall_velocity[3];
@@ -24,9 +24,13 @@ typedef struct {
   double left_alone;
   double removal;
   double max_expansion;
+  double push_factor;
+  double slope_scale;
   int most_iterations;
   int count;
   int slots;
+  int free;
+  int solids_move;
 } Solve;
 
 // `share`, `slope`, `length` and `is_last` belong to the current iteration. `is_last` states whether
@@ -184,20 +188,22 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_slope(
   progress->restarts = !is_restart && !(total.x > 0) && progress->share > 0;
 }
 
-// Sets the motion to the accelerations by the charges. Sums the curvature along the direction, see
+// Sets the motion to the accelerations by the charges. If solids move, `push` receives the forces on
+// their particles, and free particles are accelerated. Sums the curvature along the direction, see
 // PressureResponse::energy().
 kernel __attribute__((reqd_work_group_size(ITEMS, 1, 1))) void accelerate(
     const Parameters p, const Solve solve, global const Progress* progress,
-    global const int* begins, global const int4* sorted_place, global const int* counts,
-    global const int* plain_counts, global const uint* lists,
-    global const Charge* charge, global float4* solve_motion, global double4* partial) {
+    global const int* begins, global const int* order, global const int4* sorted_place,
+    global const int* counts, global const int* plain_counts, global const uint* lists,
+    global const Charge* charge, global const double* mobility, global double* push,
+    global float4* solve_motion, global double4* partial) {
   local double4 sums[GROUP];
   if (!progress->is_open) return;
   const int first = LANES * get_global_id(0);
   float3 pushes[LANES];
   if (first < solve.slots) {
-    find_pushes(&p, first, begins, sorted_place, counts, plain_counts, lists, charge,
-                pushes);
+    find_pushes(&p, solve.solids_move, first, begins, sorted_place, counts, plain_counts, lists,
+                charge, pushes);
   }
   for (int lane = 0; lane < LANES; ++lane) {
     const int slot = first + lane;
@@ -212,6 +218,16 @@ kernel __attribute__((reqd_work_group_size(ITEMS, 1, 1))) void accelerate(
         const double inertia = solve.volume * (double)weight_of(sorted_place[slot]) *
                                solve.rate_factor / solve.acceleration_factor;
         own.x = solve.dt * solve.dt * inertia * (x * x + y * y + z * z);
+      } else if (solve.solids_move) {
+        const int b = order[slot] - solve.count;
+        const double factor = solve.push_factor * (double)weight_of(sorted_place[slot]);
+        const double3 force = factor * convert_double3(pushes[lane]);
+        vstore3(force, b, push);
+        if (b < solve.free) {
+          const double square = force.x * force.x + force.y * force.y + force.z * force.z;
+          a = convert_float3(mobility[b] * force);
+          own.x = solve.dt * solve.dt * mobility[b] * square / solve.slope_scale;
+        }
       }
       solve_motion[slot] = (float4)(a, 0);
     }

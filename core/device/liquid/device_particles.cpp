@@ -104,4 +104,9 @@ void DeviceParticles::find_solid_pressure(const LiquidParameters& p) {
                neighbour_counts, neighbours);
 }
 
+void DeviceParticles::add_forces_on_solids(const LiquidParameters& p, const opencl::Buffer& force) {
+  program_.run("add_forces_on_solids", count_, p, cells.begins, order, sorted_place, sorted_motion,
+               neighbour_counts, neighbours, force);
+}
+
 }  // namespace vat

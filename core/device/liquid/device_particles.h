@@ -57,6 +57,8 @@ class DeviceParticles {
   }
   /// Extrapolates the pressure to the solids, if there are any.
   void find_solid_pressure(const LiquidParameters& p);
+  /// Adds the forces of the liquid on solids to `force`, after find_solid_pressure().
+  void add_forces_on_solids(const LiquidParameters& p, const opencl::Buffer& force);
 
   /// Returns the number of liquid and solid particles.
   std::size_t count() const { return count_; }

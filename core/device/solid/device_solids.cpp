@@ -34,6 +34,16 @@ std::size_t groups_of_solids(const Model& model) {
 
 }  // namespace
 
+std::unique_ptr<DeviceSolids> make_moving_solids(Program& program, const Model& model) {
+  if (!solids_move(model)) return nullptr;
+  return std::make_unique<DeviceSolids>(program, model, guard_bounds(model));
+}
+
+std::optional<MovingSolids> moving_particles(const DeviceSolids* solids) {
+  if (solids == nullptr) return {};
+  return MovingSolids{solids->position(), solids->velocity_in_forces()};
+}
+
 DeviceSolids::DeviceSolids(Program& program, const Model& model, const GuardBounds& bounds)
     : program_(program),
       model_(model),
@@ -192,6 +202,38 @@ void DeviceSolids::project_step(Real start, Real end, Real dt, const opencl::Buf
   projection_->drift(model_, p, start, dt, projected(), counters);
   projection_->finish(model_, p, end, dt, projected(), counters);
   check(p, model_.scene.numerics.step, counters);
+}
+
+void DeviceSolids::kick_euler_step(Real dt) {
+  if (!projection_) rigid_.kick(dt);
+  kick(dt);
+  limit_springs(dt);
+}
+
+void DeviceSolids::drift_euler_step(Real start, Real end, Real dt, const opencl::Buffer& counters) {
+  const SolidParameters at_end = parameters(end);
+  if (projection_) {
+    projection_->drift(model_, at_end, start, dt, projected(), counters);
+  } else {
+    if (range_.free > 0) {
+      program_.run("predict_particles", range_.free, number_of(range_.free), dt, motion_.position,
+                   motion_.velocity, motion_.position);
+    }
+    rigid_.move(geometry_.at(model_, {start, 0, 0, dt, 0}), dt, counters);
+    rigid_.drive(model_, start, end);
+  }
+  rigid_.pose(at_end, motion_.position, predicted_, counters);
+}
+
+void DeviceSolids::end_euler_step(Real end, Real dt, const opencl::Buffer& counters) {
+  const SolidParameters p = parameters(end);
+  change_springs();
+  if (projection_) {
+    projection_->finish(model_, p, end, dt, projected(), counters);
+  } else {
+    rigid_.check(p, dt, counters);
+  }
+  check(p, dt, counters);
 }
 
 void DeviceSolids::check(const SolidParameters& p, Real step, const opencl::Buffer& counters) {

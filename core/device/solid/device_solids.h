@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "core/device/common/device_cells.h"
 #include "core/device/common/device_counters.h"
 #include "core/device/common/device_motion.h"
+#include "core/device/liquid/device_particles.h"
 #include "core/device/opencl/program.h"
 #include "core/device/solid/device_damping.h"
 #include "core/device/solid/device_elongation.h"
@@ -25,6 +27,13 @@
 #include "core/support/check.h"
 
 namespace vat {
+
+class DeviceSolids;
+
+/// Returns the bodies of a scene with a coupled liquid, or null if all solids are at rest.
+std::unique_ptr<DeviceSolids> make_moving_solids(opencl::Program& program, const Model& model);
+/// Returns the particles of these bodies, if any.
+std::optional<MovingSolids> moving_particles(const DeviceSolids* solids);
 
 /// The bodies of a model on a device, see SolidRange: their state, and the parts of a step. A step
 /// calls move(), find_forces(), gather() and then, if must_solve() holds, solve_damping(). The
@@ -104,6 +113,11 @@ class DeviceSolids {
     rigid_.pose(at_end, motion_.position, predicted_, counters);
     change_springs();
   }
+  /// The parts of a step of symplectic Euler of `dt` [s] with an incompressible liquid, after
+  /// gather(): the kick, the drift from `start` to `end` [s], and the end of the step.
+  void kick_euler_step(Real dt);
+  void drift_euler_step(Real start, Real end, Real dt, const opencl::Buffer& counters);
+  void end_euler_step(Real end, Real dt, const opencl::Buffer& counters);
   /// Returns whether springs flow or tear.
   bool springs_change() const { return spring_changes_.has_value(); }
 

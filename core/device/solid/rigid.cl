@@ -244,6 +244,7 @@ typedef struct {
   double3 torque;
 } Resultant;
 
+// `torque` has additional torques on the particles, or is null.
 Resultant resultant_of(local double4* sums, const Rigid* body, double3 center,
                        global const double* position, global const double* force,
                        global const double* torque) {
@@ -261,8 +262,9 @@ Resultant resultant_of(local double4* sums, const Rigid* body, double3 center,
   for (int t = first; t < first + LANES; ++t) {
     double4 own = 0;
     for (int e = body->begin + t; e < body->end; e += GROUP) {
-      own.xyz += cross_product(vector_at(position, e) - center, vector_at(force, e)) +
-                 vector_at(torque, e);
+      double3 about = cross_product(vector_at(position, e) - center, vector_at(force, e));
+      if (torque != 0) about += vector_at(torque, e);
+      own.xyz += about;
     }
     sums[t] = own;
   }

@@ -70,16 +70,6 @@ bool keeps_forces(const Model& model) {
   return integrator_of(model.scene.numerics.integrator).keeps_forces();
 }
 
-std::unique_ptr<DeviceSolids> make_solids(Program& program, const Model& model) {
-  if (!solids_move(model)) return nullptr;
-  return std::make_unique<DeviceSolids>(program, model, guard_bounds(model));
-}
-
-std::optional<MovingSolids> moving_particles(const DeviceSolids* solids) {
-  if (solids == nullptr) return {};
-  return MovingSolids{solids->position(), solids->velocity_in_forces()};
-}
-
 class TaitMethod : public VerletMethod {
  public:
   TaitMethod(Program& program, std::shared_ptr<const Model> compiled,
@@ -87,7 +77,7 @@ class TaitMethod : public VerletMethod {
       : VerletMethod(std::move(compiled)),
         program_(program),
         geometry_(geometry),
-        solids_(make_solids(program, model())),
+        solids_(make_moving_solids(program, model())),
         particles_(program, model(), geometry, moving_particles(solids_.get())),
         now_(program, model().liquid_count),
         start_(program, model().liquid_count) {
@@ -257,8 +247,7 @@ void TaitMethod::evaluate(const StepMoment& start, Real end) {
 void TaitMethod::find_forces_on_solids(const LiquidParameters& p, Real end) {
   DeviceParticles& s = particles_;
   solids_->find_forces(end);
-  program_.run("add_forces_on_solids", s.count(), p, s.cells.begins, s.order, s.sorted_place,
-               s.sorted_motion, s.neighbour_counts, s.neighbours, solids_->force());
+  s.add_forces_on_solids(p, solids_->force());
   if (cohesion_) cohesion_->add_forces_on_solids(p, s, solids_->force());
   solids_->gather();
 }

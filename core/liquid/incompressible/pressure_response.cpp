@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/liquid/incompressible/solve_limits.h"
 #include "core/liquid/pairs/coupled_pairs.h"
 #include "core/liquid/pairs/liquid_pairs.h"
 #include "core/state/rigid_motion.h"
@@ -306,16 +307,6 @@ Real PressureResponse::mobility_of_liquid(Index particle) const {
   return liquid.slope_scale / liquid.rest_density;
 }
 
-/// An upper bound of the inverse mass that a force on a solid particle moves.
-Real PressureResponse::mobility_of(Index particle) const {
-  const Model& model = f_.model;
-  if (particle < model.free_count) return model.inverse_mass[particle];
-  const RigidModel& rigid = model.rigid_bodies[model.bodies[model.body[particle]].rigid];
-  if (rigid.is_held(f_.step)) return 0;
-  return rigid.inverse_mass + rigid.inverse_moments.maxCoeff() *
-                                  model.local_position[particle - model.free_count].squaredNorm();
-}
-
 /// Each solid particle counts with its own mobility.
 void PressureResponse::find_slopes() {
   LiquidScratch& buffers = f_.work.of<LiquidScratch>();
@@ -326,7 +317,9 @@ void PressureResponse::find_slopes() {
         return PairMotion{mobility_of_liquid(order_[s]) / greatest_mobility_, 0, 0, 0};
       },
       [&](std::size_t s) {
-        return PairMotion{0, std::sqrt(mobility_of(model.liquid_count + solids_[s])), 0, 0};
+        const Index particle = model.liquid_count + solids_[s];
+        const Real mobility = greatest_mobility_of_solid(model, particle, f_.step);
+        return PairMotion{0, std::sqrt(mobility), 0, 0};
       },
       [](const PairImage&, const PairMotion& source) { return source; });
   const Real scale = reference_kernel(model).scale() * greatest_mobility_;

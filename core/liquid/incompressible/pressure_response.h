@@ -99,7 +99,6 @@ class PressureResponse {
   /// Computes LiquidScratch::volume_slopes, unless the density stage has computed them.
   void find_slopes();
   Real mobility_of_liquid(Index particle) const;
-  Real mobility_of(Index particle) const;
 
   const ForceModel& f_;
   Configuration& at_;

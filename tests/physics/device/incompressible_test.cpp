@@ -346,22 +346,6 @@ TEST(IncompressibleDevice, RefusesFeaturesThatItLacks) {
          s.materials[0].liquid->surface_tension = 0.07;
          s.materials[0].liquid->support_radius = 2.5 * kSpacing;
        }},
-      {"/bodies/1/kind",
-       [](Scene& s) {
-         s.bodies.push_back(make_body("sponge", BodyKind::deformable, "water",
-                                      make_particles({{0.25, 0.06, 0.3}}, 0.1), 0.01));
-       }},
-      {"/bodies/1/kind",
-       [](Scene& s) {
-         s.bodies.push_back(make_body("stone", BodyKind::rigid, "water",
-                                      make_particles({{0.25, 0.06, 0.3}}, 0.1), 0.01));
-       }},
-      {"/bodies/1/motion",
-       [](Scene& s) {
-         s.bodies.push_back(make_body("stone", BodyKind::rigid, "water",
-                                      make_particles({{0.25, 0.06, 0.3}}, 0.1), 0.01));
-         s.bodies[1].motion = SlideMotion{{1, 0, 0}, 0.1, 1};
-       }},
   };
   expect_refusals(make_column(), cases);
   const SceneCase adaptive[] = {

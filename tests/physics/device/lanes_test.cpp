@@ -123,5 +123,17 @@ TEST(LanesOfDevices, DoNotChangeTheBitsOfBodies) {
   EXPECT_NE(alone, in_liquid);
 }
 
+TEST(LanesOfDevices, DoNotChangeTheBitsOfBodiesInIncompressibleLiquids) {
+  for (const Real support : {2 * kSpacing, 4.2 * kSpacing}) {  // complete and incomplete lists
+    Scene scene = make_column(PressureSolver::incompressible);
+    scene.materials[0].liquid->support_radius = support;
+    add_bodies(scene);
+    scene.materials[2].springs =
+        LatticeSprings{SpringConstants{200, 0}, SpringConstants{100, 0}, SpringConstants{50, 0}};
+    scene.default_interface.damping = 0.2;
+    EXPECT_EQ(hash_with_lanes(scene, opencl::kMostLanes), hash_with_lanes(scene, 1));
+  }
+}
+
 }  // namespace
 }  // namespace vat::device_lanes_test
