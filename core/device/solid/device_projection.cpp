@@ -18,7 +18,7 @@ using opencl::Program;
 constexpr int kMaxRounds = 4;
 constexpr std::size_t kMaxSweepers = 1024;  // work-items of sweeps
 constexpr std::size_t kNumber = sizeof(std::int32_t);
-constexpr std::size_t kColumn = 3 * sizeof(double);
+constexpr std::size_t kVectorColumn = 3 * sizeof(double);
 
 // Structs of projection.cl.
 struct ProjectedLaw {
@@ -74,7 +74,7 @@ DeviceProjection::DeviceProjection(Program& program, const Model& model)
       records_(program, capacity_ * sizeof(Record)),
       saved_records_(program, capacity_ * sizeof(Record)),
       progress_(program, sizeof(Progress)),
-      start_position_(program, particles_ * kColumn),
+      start_position_(program, particles_ * kVectorColumn),
       start_poses_(program, at_least_one_of(bodies_) * DeviceRigidBodies::kPoseBytes),
       motions_(program, at_least_one_of(bodies_) * kRigidMotion),
       predicted_motions_(program, at_least_one_of(bodies_) * kRigidMotion),
@@ -95,7 +95,7 @@ std::size_t DeviceProjection::bytes_for(const Model& model) {
   return DevicePrefixSums::bytes_for(particles) +
          projected_laws(model).size() * sizeof(ProjectedLaw) + (2 * particles + 1) * kNumber +
          capacity * (kConstraint + 2 * sizeof(Record) + 2 * kNumber) + sizeof(Progress) +
-         particles * kColumn + 3 * ends_of(model) * kNumber + 2 * kNumber +
+         particles * kVectorColumn + 3 * ends_of(model) * kNumber + 2 * kNumber +
          at_least_one_of(model.rigid_bodies.size()) *
              (DeviceRigidBodies::kPoseBytes + 2 * kRigidMotion);
 }
@@ -238,7 +238,7 @@ void DeviceProjection::sweep(const Step& step, bool is_first, const ProjectedSol
 
 void DeviceProjection::drift(const Model& model, const SolidParameters& p, Real start, Real dt,
                              const ProjectedSolids& s, const Buffer& counters) {
-  program_.copy(s.motion.position, start_position_, particles_ * kColumn);
+  program_.copy(s.motion.position, start_position_, particles_ * kVectorColumn);
   if (bodies_ > 0) {
     program_.copy(s.rigid.poses, start_poses_, bodies_ * DeviceRigidBodies::kPoseBytes);
   }
