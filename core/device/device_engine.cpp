@@ -3,6 +3,7 @@
 #include <string>
 
 #include "core/device/common/arithmetic_check.h"
+#include "core/device/common/kernel_values.h"
 #include "core/device/gas/gas_method.h"
 #include "core/device/incompressible/incompressible_method.h"
 #include "core/device/kernel_source.h"
@@ -35,9 +36,14 @@ MethodKind kind_of(const Model& model) {
   return {&bytes_for_tait, &make_tait_method};
 }
 
+std::string lanes_option(const opencl::Device& device) {
+  return " -DLANES=" + std::to_string(device.lanes);
+}
+
 class DeviceEngine : public StepEngine {
  public:
-  /// `options` are those of `program`, which is for scenes with the kernel wendland_c2.
+  /// `options` are those of `program`, which is for scenes with the kernel wendland_c2 and single
+  /// precision.
   DeviceEngine(std::unique_ptr<Program> program, std::string options, DeviceArithmetic arithmetic)
       : device_(program->device()),
         options_(std::move(options)),
@@ -50,8 +56,9 @@ class DeviceEngine : public StepEngine {
   Status read(State& state) override;
 
  private:
-  /// Creates the program for the kernel of a scene, if the present program is for another one.
-  Status adapt_program(const Scene& scene);
+  /// Creates the program for the kernel and the precision of a scene, if the present program is for
+  /// others.
+  Status adapt_program(const Model& model);
 
   const opencl::Device device_;
   const std::string options_;
@@ -61,14 +68,23 @@ class DeviceEngine : public StepEngine {
   std::unique_ptr<DeviceMethod> method_;  ///< of the bound model
 };
 
-Status DeviceEngine::adapt_program(const Scene& scene) {
-  if (scene.kernel == kernel_) return {};
-  const bool is_cubic = scene.kernel == KernelId::cubic_spline;
-  Result<std::unique_ptr<Program>> program = Program::create(
-      device_, device_kernels(), options_ + (is_cubic ? " -DVAT_CUBIC_SPLINE" : ""));
+Status DeviceEngine::adapt_program(const Model& model) {
+  const KernelId kernel = model.scene.kernel;
+  const bool is_double = has_double_pairs(model);
+  if (kernel == kernel_ && is_double == program_->has_double_pairs()) return {};
+  std::string options = options_;
+  opencl::Device device = device_;
+  if (kernel == KernelId::cubic_spline) options += " -DVAT_CUBIC_SPLINE";
+  if (is_double) {
+    options += " -DVAT_DOUBLE_PAIRS";
+    device.lanes = 1;  // vectors are in single precision
+  }
+  options += lanes_option(device);
+  Result<std::unique_ptr<Program>> program =
+      Program::create(device, device_kernels(), options, is_double);
   if (!program) return program.errors();
   program_ = std::move(program).value();
-  kernel_ = scene.kernel;
+  kernel_ = kernel;
   return {};
 }
 
@@ -78,7 +94,7 @@ Status DeviceEngine::bind(std::shared_ptr<const Model> model) {
   if (model->liquid_count == 0 && !model->nozzles.empty()) return {};
   Errors missing = find_features_not_on_device(*model);
   if (!missing.empty()) return missing;
-  if (Status adapted = adapt_program(model->scene); !adapted) return adapted;
+  if (Status adapted = adapt_program(*model); !adapted) return adapted;
   const MethodKind kind = kind_of(*model);
   const std::size_t bytes = kind.bytes_for(*model);
   const opencl::Device& device = program_->device();
@@ -121,7 +137,7 @@ Status DeviceEngine::read(State& state) {
 
 Result<std::unique_ptr<StepEngine>> make_device_engine(const opencl::Device& device,
                                                        DeviceArithmetic arithmetic) {
-  std::string options = "-cl-std=CL1.2 -DLANES=" + std::to_string(device.lanes);
+  std::string options = "-cl-std=CL1.2";
   if (arithmetic == DeviceArithmetic::exact) {
     if (!device.is_exact) {
       return Error{"not_available", "/device",
@@ -129,7 +145,8 @@ Result<std::unique_ptr<StepEngine>> make_device_engine(const opencl::Device& dev
     }
     options += " -DVAT_EXACT -cl-fp32-correctly-rounded-divide-sqrt";
   }
-  Result<std::unique_ptr<Program>> program = Program::create(device, device_kernels(), options);
+  Result<std::unique_ptr<Program>> program =
+      Program::create(device, device_kernels(), options + lanes_option(device));
   if (!program) return program.errors();
   if (arithmetic == DeviceArithmetic::exact) {
     try {

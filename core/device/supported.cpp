@@ -93,8 +93,13 @@ void Missing::check_gas() {
 }
 
 void Missing::check_liquid() {
-  reject(scene_.pair_precision != PairPrecision::single_precision, "/pair_precision",
-         "must be single");
+  const bool needs_single = is_incompressible() || model_.has_surface_tension || model_.cohesion ||
+                            model_.is_filled || may_solve_viscosity(model_) ||
+                            scene_.numerics.control == StepControl::adaptive;
+  reject(
+      scene_.pair_precision != PairPrecision::single_precision && needs_single, "/pair_precision",
+      "must be single with adaptive steps, incompressible liquids, surface tension, liquids that "
+      "fill their world, and steps that do not resolve the viscosity");
   reject(is_incompressible() && !scene_.forces.pressure, "/forces/pressure",
          "must be true for an incompressible liquid");
   const StepControl control = scene_.numerics.control;

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "core/device/opencl/program.h"
+#include "core/model/model.h"
 #include "core/scene/scene.h"
 #include "core/types.h"
 
@@ -38,6 +40,20 @@ void store_central_field(const Scene& scene, Parameters& parameters) {
   store(field.center, parameters.field_center);
   parameters.field_strength = field.angular_frequency * field.angular_frequency;
 }
+
+/// Returns whether sums over pairs of liquids are in double precision.
+inline bool has_double_pairs(const Model& model) {
+  return model.is_coupled && model.scene.pair_precision == PairPrecision::double_precision;
+}
+/// Returns the bytes of a number in the precision of these sums.
+inline std::size_t bytes_of_real(const Model& model) {
+  return has_double_pairs(model) ? sizeof(double) : sizeof(float);
+}
+
+/// Write and read numbers in the precision of the sums over pairs of the program.
+void write_reals(opencl::Program& program, const opencl::Buffer& buffer,
+                 std::span<const double> values);
+void read_reals(opencl::Program& program, const opencl::Buffer& buffer, std::span<double> values);
 
 /// Returns a count as an argument of a kernel.
 inline std::int32_t number_of(std::size_t count) {

@@ -212,7 +212,7 @@ void IncompressibleMethod::kick(const LiquidParameters& p, const SolveParameters
   DeviceParticles& s = particles_;
   if (!viscous_) {
     LiquidParameters without = p;
-    for (float& g : without.gravity) g = 0;
+    for (double& g : without.gravity) g = 0;
     program_.run_in_lanes("kick", s.count(), without, solve, s.cells.begins, s.order,
                           s.sorted_place, s.sorted_motion, s.neighbour_counts, s.plain_counts,
                           s.neighbours, now_.motion.velocity, solve_.solve_motion);

@@ -1,5 +1,6 @@
 #include "core/device/liquid/device_particles.h"
 
+#include "core/device/common/kernel_values.h"
 #include "core/liquid/pairs/pair_sums.h"
 #include "core/support/check.h"
 
@@ -32,9 +33,9 @@ std::size_t slots_in_lanes(std::size_t particles) {
 DeviceParticles::DeviceParticles(Program& program, const Model& model,
                                  const LiquidGeometry& geometry, std::optional<MovingSolids> moving)
     : order(program, model.particle_count * kNumber),
-      sorted_place(program, slots_in_lanes(model.particle_count) * sizeof(Float4)),
-      sorted_motion(program, slots_in_lanes(model.particle_count) * sizeof(Float4)),
-      density(program, model.particle_count * sizeof(float)),
+      sorted_place(program, slots_in_lanes(model.particle_count) * 4 * bytes_of_real(model)),
+      sorted_motion(program, slots_in_lanes(model.particle_count) * 4 * bytes_of_real(model)),
+      density(program, model.particle_count * bytes_of_real(model)),
       neighbour_counts(program, slots_in_lanes(model.particle_count) * kNumber),
       neighbours(program, list_entries(model.particle_count, geometry) * kNumber),
       columns(program, column_numbers(model.particle_count) * kNumber),
@@ -45,20 +46,20 @@ DeviceParticles::DeviceParticles(Program& program, const Model& model,
       program_(program),
       liquid_count_(model.liquid_count),
       count_(model.particle_count),
-      weight_(program, count_ * sizeof(float)),
-      place_(program, count_ * sizeof(Float4)),
-      motion_(program, count_ * sizeof(Float4)),
+      weight_(program, count_ * bytes_of_real(model)),
+      place_(program, count_ * 4 * bytes_of_real(model)),
+      motion_(program, count_ * 4 * bytes_of_real(model)),
       moving_(moving) {
   const Real scale = model.liquids[model.material[0]]->kernel.scale();
-  std::vector<float> weights;
+  std::vector<double> weights;
   for (std::size_t i = 0; i < count_; ++i) {
-    const auto weight = static_cast<float>(model.rest_volume[i] * scale);
+    const Real weight = model.rest_volume[i] * scale;
     weights.push_back(i < liquid_count_ ? weight : -weight);
   }
   if (count_ > liquid_count_ && !moving_) {
     solid_position_ = opencl::Buffer(program, (count_ - liquid_count_) * sizeof(Vec3));
   }
-  program_.write(weight_, std::span<const float>(weights));
+  write_reals(program_, weight_, weights);
   program_.write(selected, std::span<const std::array<std::uint8_t, 8>>(kSelectedLanes));
 }
 
@@ -66,8 +67,8 @@ std::size_t DeviceParticles::bytes_for(const Model& model, const LiquidGeometry&
                                        bool solids_move) {
   const std::size_t at_rest = solids_move ? 0 : model.particle_count - model.liquid_count;
   const std::size_t slots = slots_in_lanes(model.particle_count);
-  return model.particle_count * (2 * sizeof(Float4) + 3 * kNumber) +
-         slots * (2 * sizeof(Float4) + 2 * kNumber) + at_rest * sizeof(Vec3) +
+  return model.particle_count * (10 * bytes_of_real(model) + kNumber) +
+         slots * (8 * bytes_of_real(model) + 2 * kNumber) + at_rest * sizeof(Vec3) +
          (list_entries(model.particle_count, geometry) + column_numbers(model.particle_count)) *
              kNumber +
          sizeof kSelectedLanes +

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <span>
+#include <type_traits>
 
 #include "core/device/common/kernel_values.h"
 #include "core/device/common/vat_box.h"
@@ -18,10 +19,20 @@
 namespace vat {
 namespace {
 
-constexpr int kMaxBits = 23;  ///< exact in single precision
-constexpr int kMinBits = 19;
+/// The range of integer positions, see particles.cl.
+struct Places {
+  int most_bits;   ///< of a support radius, exact in the precision of sums
+  int least_bits;  ///< the same for large boxes
+  Real limit;      ///< of positions
+};
+constexpr Places kSinglePlaces{23, 19, 0x1p29};
+constexpr Places kDoublePlaces{52, 48, 0x1p59};
+
+const Places& places_of(const Model& model) {
+  return has_double_pairs(model) ? kDoublePlaces : kSinglePlaces;
+}
+
 constexpr Real kMostCells = 4096;
-constexpr Real kPlaces = 1 << 29;  ///< limit of integer positions in particles.cl
 
 // Lists of neighbours. A compressed liquid has more neighbours than a liquid at rest.
 constexpr int kLeastList = 64;
@@ -53,6 +64,62 @@ std::int32_t list_length_for(const Model& model) {
 
 }  // namespace
 
+LiquidParametersOf<float, std::int32_t> LiquidParameters::in_single_precision() const {
+  LiquidParametersOf<float, std::int32_t> single{};
+  const auto copy = [](const auto& from, auto& to) {
+    static_assert(std::extent_v<std::remove_reference_t<decltype(from)>> ==
+                  std::extent_v<std::remove_reference_t<decltype(to)>>);
+    using To = std::remove_reference_t<decltype(to[0])>;
+    std::ranges::transform(from, to, [](auto value) { return static_cast<To>(value); });
+  };
+  copy(origin, single.origin);
+  single.inverse_unit = inverse_unit;
+  copy(wall_low, single.wall_low);
+  copy(wall_high, single.wall_high);
+  copy(wall_velocity, single.wall_velocity);
+  copy(period, single.period);
+  copy(domain_low, single.domain_low);
+  copy(domain_high, single.domain_high);
+  single.greatest_speed2 = greatest_speed2;
+  single.closing = closing;
+  single.opening = opening;
+  single.drift = drift;
+  single.prediction = prediction;
+  copy(field_center, single.field_center);
+  single.field_strength = field_strength;
+  copy(gravity, single.gravity);
+  copy(still, single.still);
+  single.drag = static_cast<float>(drag);
+  copy(fall, single.fall);
+  single.unit = static_cast<float>(unit);
+  single.in_supports = static_cast<float>(in_supports);
+  single.density = static_cast<float>(density);
+  single.layer = static_cast<float>(layer);
+  single.stiffness = static_cast<float>(stiffness);
+  single.tension = static_cast<float>(tension);
+  single.slope_factor = static_cast<float>(slope_factor);
+  single.viscosity = static_cast<float>(viscosity);
+  single.solid_factor = static_cast<float>(solid_factor);
+  copy(speeds_of_walls, single.speeds_of_walls);
+  copy(twice_low, single.twice_low);
+  copy(twice_high, single.twice_high);
+  copy(periods, single.periods);
+  copy(cells, single.cells);
+  single.cell_bits = cell_bits;
+  single.reach = reach;
+  single.support = static_cast<std::int32_t>(support);
+  single.walls = walls;
+  single.sides = sides;
+  single.no_slip = no_slip;
+  single.is_thick = is_thick;
+  single.bounces = bounces;
+  single.is_filled = is_filled;
+  single.count = count;
+  single.solids = solids;
+  single.list_length = list_length;
+  return single;
+}
+
 void remove_walls(LiquidParameters& parameters) {
   for (int axis = 0; axis < 3; ++axis) {
     parameters.wall_low[axis] = -std::numeric_limits<double>::infinity();
@@ -66,14 +133,16 @@ std::int32_t periodic_sides(const Model& model) {
   return sides;
 }
 
-/// A periodic box begins at the origin. Positions beyond kPlaces are invalid, so that a longer
+/// A periodic box begins at the origin. Positions beyond the limit are invalid, so that a longer
 /// period needs no exact value.
-void LiquidGeometry::set_period(const PeriodicBox& box) {
+void LiquidGeometry::set_period(const Model& model) {
+  const PeriodicBox& box = model.periodic;
   for (int axis = 0; axis < 3; ++axis) {
     if (!box.repeats(axis)) continue;
     constant_.period[axis] = box.length(axis);
-    const Real places = std::min(box.length(axis) * constant_.inverse_unit, 2 * kPlaces);
-    constant_.periods[axis] = static_cast<std::int32_t>(std::llround(places));
+    const Real places =
+        std::min(box.length(axis) * constant_.inverse_unit, 2 * places_of(model).limit);
+    constant_.periods[axis] = std::llround(places);
     constant_.twice_high[axis] = 2 * constant_.periods[axis];
   }
 }
@@ -83,9 +152,10 @@ void LiquidGeometry::set_grid(const Model& model) {
   const Real support = model.liquids[model.material[0]]->support_radius;
   const Real extent = (high - low).maxCoeff() / support;
   // Twice the box fits into the integers if possible, with the finest unit.
+  const auto [most_bits, least_bits, limit] = places_of(model);
   const int bits =
-      std::clamp(static_cast<int>(std::floor(std::log2(kPlaces / std::max(Real{1}, 2 * extent)))),
-                 kMinBits, kMaxBits);
+      std::clamp(static_cast<int>(std::floor(std::log2(limit / std::max(Real{1}, 2 * extent)))),
+                 least_bits, most_bits);
   // A cell is half a support radius. In a large box, cells are larger, so that they are not much
   // more than the particles.
   int doublings = -1;
@@ -95,7 +165,7 @@ void LiquidGeometry::set_grid(const Model& model) {
     for (int k = 0; k < 3; ++k) {
       const Real along = std::max(Real{1}, std::ceil((high[k] - low[k]) / cell));
       count *= along;
-      constant_.cells[k] = static_cast<std::int32_t>(std::min(along, kPlaces));
+      constant_.cells[k] = static_cast<std::int32_t>(std::min(along, Real{0x1p29}));
     }
     if (count <= kMostCells + 4 * static_cast<Real>(model.particle_count)) break;
     ++doublings;
@@ -104,11 +174,11 @@ void LiquidGeometry::set_grid(const Model& model) {
   const Real unit = std::ldexp(support, -bits);
   constant_.cell_bits = bits + doublings;
   constant_.reach = doublings < 0 ? 2 : 1;
-  constant_.support = 1 << bits;
+  constant_.support = std::int64_t{1} << bits;
   constant_.inverse_unit = 1 / unit;
-  constant_.unit = static_cast<float>(unit);
-  constant_.in_supports = std::ldexp(1.0F, -bits);
-  set_period(model.periodic);
+  constant_.unit = unit;
+  constant_.in_supports = std::ldexp(1.0, -bits);
+  set_period(model);
 }
 
 LiquidGeometry::LiquidGeometry(const Model& model, const GuardBounds& bounds) {
@@ -120,14 +190,14 @@ LiquidGeometry::LiquidGeometry(const Model& model, const GuardBounds& bounds) {
   store(bounds.max, constant_.domain_high);
   travel_ = bounds.travel[model.body[0]];
   constant_.greatest_speed2 = greatest_speed2(model.scene.numerics.step);
-  constant_.density = static_cast<float>(liquid.rest_density);
-  constant_.stiffness = static_cast<float>(liquid.rest_density * liquid.stiffness);
-  constant_.tension = static_cast<float>(liquid.tensile_strength);
+  constant_.density = (liquid.rest_density);
+  constant_.stiffness = (liquid.rest_density * liquid.stiffness);
+  constant_.tension = (liquid.tensile_strength);
   // The acceleration is force / mass, and mass / rest volume is the density.
-  constant_.slope_factor = static_cast<float>(slope_factor(model, liquid) / liquid.rest_density);
-  constant_.viscosity = static_cast<float>(liquid.central_viscosity / liquid.support_radius);
+  constant_.slope_factor = (slope_factor(model, liquid) / liquid.rest_density);
+  constant_.viscosity = (liquid.central_viscosity / liquid.support_radius);
   // The weight of a particle is its rest volume times the scale of the kernel.
-  constant_.solid_factor = static_cast<float>(slope_factor(model, liquid) / liquid.kernel.scale());
+  constant_.solid_factor = (slope_factor(model, liquid) / liquid.kernel.scale());
   for (const int wall : model.walls) constant_.walls |= 1 << wall;
   constant_.sides = constant_.walls | periodic_sides(model);
   for (const int wall : model.no_slip_walls) constant_.no_slip |= 1 << wall;
@@ -151,22 +221,21 @@ LiquidParameters LiquidGeometry::at(const Model& model, const StepMoment& moment
   store(gravity, p.gravity);
   store(fall, p.fall);
   const LiquidModel& liquid = *model.liquids[model.material[0]];
-  p.layer = static_cast<float>(liquid.rest_density * fall.norm() * liquid.spacing);
+  p.layer = (liquid.rest_density * fall.norm() * liquid.spacing);
   if (scene.settling && moment.time < scene.settling->until) {
-    p.drag = static_cast<float>(scene.settling->drag);
+    p.drag = (scene.settling->drag);
     store(motion.velocity, p.still);
   }
   remove_walls(p);
   for (const int wall : model.walls) {
     const int axis = wall / 2;
     const Real plane = plane_of_wall(*scene.vat, motion, wall);
-    const auto twice =
-        static_cast<std::int32_t>(std::llround(2 * (plane - origin[axis]) * p.inverse_unit));
+    const std::int64_t twice = std::llround(2 * (plane - origin[axis]) * p.inverse_unit);
     (wall % 2 == 0 ? p.wall_low : p.wall_high)[axis] = plane;
     (wall % 2 == 0 ? p.twice_low : p.twice_high)[axis] = twice;
     const auto index = static_cast<std::size_t>(wall);
     const Vec3 velocity = motion.velocity + scene.vat->walls[index].velocity;
-    for (int k = 0; k < 3; ++k) p.speeds_of_walls[3 * wall + k] = static_cast<float>(velocity[k]);
+    for (int k = 0; k < 3; ++k) p.speeds_of_walls[3 * wall + k] = (velocity[k]);
   }
   p.closing = moment.closing;
   p.opening = moment.opening;

@@ -9,8 +9,9 @@
 namespace vat {
 
 /// The struct Parameters of core/device/liquid/particles.cl, with the same members in the same
-/// order.
-struct LiquidParameters {
+/// order. `Number` is the type of sums over pairs, and `Coordinate` that of integer positions.
+template <class Number, class Coordinate>
+struct LiquidParametersOf {
   double origin[3];     ///< of integer positions and of cells, moves with the vat [m]
   double inverse_unit;  ///< of integer positions [1/m]
   double wall_low[3];   ///< infinite without a wall [m]
@@ -26,27 +27,27 @@ struct LiquidParameters {
   double prediction;       ///< duration of the kick of velocities in viscous forces [s]
   double field_center[3];  ///< of the central field [m]
   double field_strength;   ///< acceleration / distance from the center; 0 without a field [1/s^2]
-  float gravity[3];
-  float still[3];      ///< velocity that the settling drag leaves [m/s]
-  float drag;          ///< of settling [1/s]
-  float fall[3];       ///< free fall in the frame of the vat [m/s^2]
-  float unit;          ///< [m]
-  float in_supports;   ///< unit / support radius
-  float density;       ///< at rest [kg/m^3]
-  float layer;         ///< pressure under one layer of particles [Pa]
-  float stiffness;     ///< density times square of the speed of sound [Pa]
-  float tension;       ///< maximum tension [Pa]
-  float slope_factor;  ///< acceleration / sum of pressures and gradients
-  float viscosity;     ///< central viscosity / support radius
-  float solid_factor;  ///< force on a solid / (its weight times sum of pressures and gradients)
-  float speeds_of_walls[18];  ///< velocity of the surface of each wall [m/s]
-  std::int32_t twice_low[3];  ///< 2 wall_low in integer positions
-  std::int32_t twice_high[3];
-  std::int32_t periods[3];  ///< period in integer positions; 0 along other axes
+  Number gravity[3];
+  Number still[3];      ///< velocity that the settling drag leaves [m/s]
+  Number drag;          ///< of settling [1/s]
+  Number fall[3];       ///< free fall in the frame of the vat [m/s^2]
+  Number unit;          ///< [m]
+  Number in_supports;   ///< unit / support radius
+  Number density;       ///< at rest [kg/m^3]
+  Number layer;         ///< pressure under one layer of particles [Pa]
+  Number stiffness;     ///< density times square of the speed of sound [Pa]
+  Number tension;       ///< maximum tension [Pa]
+  Number slope_factor;  ///< acceleration / sum of pressures and gradients
+  Number viscosity;     ///< central viscosity / support radius
+  Number solid_factor;  ///< force on a solid / (its weight times sum of pressures and gradients)
+  Number speeds_of_walls[18];  ///< velocity of the surface of each wall [m/s]
+  Coordinate twice_low[3];     ///< 2 wall_low in integer positions
+  Coordinate twice_high[3];
+  Coordinate periods[3];  ///< period in integer positions; 0 along other axes
   std::int32_t cells[3];
   std::int32_t cell_bits;    ///< a cell has 2^cell_bits integer positions along each axis
   std::int32_t reach;        ///< cells that a support radius extends into beside the own one
-  std::int32_t support;      ///< support radius in integer positions
+  Coordinate support;        ///< support radius in integer positions
   std::int32_t walls;        ///< bit w: wall w exists
   std::int32_t sides;        ///< bit w: wall w exists, or its axis is periodic
   std::int32_t no_slip;      ///< bit w: liquid does not slip along wall w
@@ -56,6 +57,12 @@ struct LiquidParameters {
   std::int32_t count;        ///< liquid particles
   std::int32_t solids;       ///< solid particles
   std::int32_t list_length;  ///< greatest number of neighbours in a list
+};
+
+/// The parameters on the host, which are those of sums in double precision.
+struct LiquidParameters : LiquidParametersOf<double, std::int64_t> {
+  /// Returns the parameters of sums in single precision. The integer positions must fit.
+  LiquidParametersOf<float, std::int32_t> in_single_precision() const;
 };
 
 /// Returns the bits of the sides across periodic axes.
@@ -79,7 +86,7 @@ class LiquidGeometry {
 
  private:
   void set_grid(const Model& model);
-  void set_period(const PeriodicBox& box);
+  void set_period(const Model& model);
 
   LiquidParameters constant_{};
   Real travel_ = 0;             ///< [m]

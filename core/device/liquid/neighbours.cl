@@ -24,7 +24,7 @@
     return rest * rest * rest;                                                 \
   }
 #endif
-DEFINE_KERNEL(float, kernel_value, kernel_slope)
+DEFINE_KERNEL(real, kernel_value, kernel_slope)
 #if LANES > 1
 DEFINE_KERNEL(float16, kernel_values, kernel_slopes)
 #endif
@@ -44,17 +44,17 @@ bool is_shift(const Parameters* p, const Mirror* m) {
   return !reverses(p, m, 0) && !reverses(p, m, 1) && !reverses(p, m, 2);
 }
 
-int reflected(const Parameters* p, const Mirror* m, int place, int axis) {
+coord reflected(const Parameters* p, const Mirror* m, coord place, int axis) {
   if (m->axes[axis] == 0) return place;
-  const int period = p->periods[axis];
+  const coord period = p->periods[axis];
   if (period > 0) return m->axes[axis] == 1 ? place + period : place - period;
   return (m->axes[axis] == 1 ? p->twice_low[axis] : p->twice_high[axis]) - place;
 }
 
 // Bit 2 k + 1 of the result: the lower side across axis k is within a support radius. Bit 2 k + 2:
 // the upper side.
-int sides_near(const Parameters* p, const int* n) {
-  const int twice_reach = 2 * p->support;
+int sides_near(const Parameters* p, const coord* n) {
+  const coord twice_reach = 2 * p->support;
   int near = 0;
   for (int k = 0; k < 3; ++k) {
     if (((p->sides >> (2 * k)) & 1) && 2 * n[k] - p->twice_low[k] < twice_reach) near |= 2 << (2 * k);
@@ -100,26 +100,27 @@ bool is_near(const Mirror* m, int sides) {
     int low[3];                                                                \
     int high[3];                                                               \
     for (int k = 0; k < 3; ++k) {                                              \
-      const int c = at[k] >> (p)->cell_bits;                                   \
-      low[k] = clamp(c - (p)->reach, 0, (p)->cells[k] - 1);                             \
-      high[k] = clamp(c + (p)->reach, 0, (p)->cells[k] - 1);                            \
+      const coord c = at[k] >> (p)->cell_bits;                                 \
+      const coord last = (p)->cells[k] - 1;                                    \
+      low[k] = clamp(c - (p)->reach, (coord)0, last);                          \
+      high[k] = clamp(c + (p)->reach, (coord)0, last);                         \
     }                                                                          \
     FOR_EACH_ROW_IN(p, low, high, begins, BODY)                                \
   }
 
 // The part of the relative density that a particle and its own images have in excess of 1.
-float own_excess(const Parameters* p, const int* n, float weight) {
-  float own = 1;
+real own_excess(const Parameters* p, const coord* n, real weight) {
+  real own = 1;
   FOR_EACH_MIRROR(p, n, {
     if (m.axes[0] + m.axes[1] + m.axes[2] == 0) continue;
-    float square = 0;
+    real square = 0;
     for (int k = 0; k < 3; ++k) {
-      const float way = (float)(n[k] - reflected(p, &m, n[k], k)) * p->in_supports;
+      const real way = (real)(n[k] - reflected(p, &m, n[k], k)) * p->in_supports;
       square += way * way;
     }
     if (square < 1) own += kernel_value(sqrt(square));
   })
-  return max(0.0f, weight * own - 1);
+  return max((real)0, weight * own - 1);
 }
 
 // Lists of neighbours: entry k of slot s is entry_of(s, k). An entry is the slot of the neighbour
@@ -151,7 +152,7 @@ Mirror mirror_of(uint code) {
 // of the image, or 0. `at` is the position n, or its reflection in this mirror.
 #define FOR_EACH_CANDIDATE(p, n, begins, BODY)                                 \
   FOR_EACH_MIRROR(p, n, {                                                      \
-    int at[3];                                                                 \
+    coord at[3];                                                                 \
     for (int k = 0; k < 3; ++k) at[k] = reflected(p, &m, n[k], k);             \
     const uint code = code_of(&m);                                             \
     FOR_EACH_ROW(p, at, begins, {                                              \
@@ -181,29 +182,29 @@ void list(const Parameters* p, global uint* lists, int slot, int* count, int sou
 }
 
 // The vector from a source to a target, or to its image at `at`, in support radii.
-float3 way_to(const Parameters* p, const int* at, int4 source) {
-  return (float3)((float)(at[0] - source.x), (float)(at[1] - source.y), (float)(at[2] - source.z)) *
+real3 way_to(const Parameters* p, const coord* at, place4 source) {
+  return (real3)((real)(at[0] - source.x), (real)(at[1] - source.y), (real)(at[2] - source.z)) *
          p->in_supports;
 }
 
 // The direction x from the image in a mirror, seen from the particle that is not reflected.
-float3 turned(const Parameters* p, uint code, float3 x) {
+real3 turned(const Parameters* p, uint code, real3 x) {
   if (code == 0) return x;
   const Mirror m = mirror_of(code);
-  return (float3)(reverses(p, &m, 0) ? -x.x : x.x, reverses(p, &m, 1) ? -x.y : x.y,
+  return (real3)(reverses(p, &m, 0) ? -x.x : x.x, reverses(p, &m, 1) ? -x.y : x.y,
                   reverses(p, &m, 2) ? -x.z : x.z);
 }
 
 // The vector from a source, or from its image, to a target at n, in support radii.
-float3 way_from(const Parameters* p, uint code, const int* n, int4 source) {
+real3 way_from(const Parameters* p, uint code, const coord* n, place4 source) {
   if (code == 0) return way_to(p, n, source);
   const Mirror m = mirror_of(code);
-  int at[3];
+  coord at[3];
   for (int k = 0; k < 3; ++k) at[k] = reflected(p, &m, n[k], k);
   return turned(p, code, way_to(p, at, source));
 }
 
-float square_of(float3 x) {
+real square_of(real3 x) {
   return x.x * x.x + x.y * x.y + x.z * x.z;
 }
 

@@ -2,20 +2,20 @@
 
 // The pressure of the image of a particle at `place` includes the hydrostatic pressure difference;
 // see ImagePressure.
-float image_pressure(const Parameters* p, const Mirror* m, int4 place, float pressure) {
+real image_pressure(const Parameters* p, const Mirror* m, place4 place, real pressure) {
   if (!p->is_filled && pressure <= 0) return pressure;
-  const int n[3] = {place.x, place.y, place.z};
-  float more = 0;
+  const coord n[3] = {place.x, place.y, place.z};
+  real more = 0;
   for (int k = 0; k < 3; ++k) {
     if (p->periods[k] > 0) continue;
-    more += p->fall[k] * ((float)(reflected(p, m, n[k], k) - n[k]) * p->unit);
+    more += p->fall[k] * ((real)(reflected(p, m, n[k], k) - n[k]) * p->unit);
   }
   if (p->is_filled) return pressure + p->density * more;
-  return max(0.0f, pressure + pressure / (pressure + p->layer) * (p->density * more));
+  return max((real)0, pressure + pressure / (pressure + p->layer) * (p->density * more));
 }
 
 // Avoids a division by 0 in viscous forces: (h/2)^2 / 100 in units of the support radius h.
-#define SOFTENING (0.01f / 4)
+#define SOFTENING ((real)0.01 / 4)
 
 // The force of a pair without its factor x. `approach` is the product of x and the relative velocity.
 #define DEFINE_SHARE_OF_FORCE(Reals, share_of_force, kernel_slope)                              \
@@ -24,34 +24,34 @@ float image_pressure(const Parameters* p, const Mirror* m, int4 place, float pre
     const Reals force = p->viscosity * approach / (square + SOFTENING) - pressures;            \
     return force * (weight * kernel_slope(sqrt(square)));                                      \
   }
-DEFINE_SHARE_OF_FORCE(float, share_of_force, kernel_slope)
+DEFINE_SHARE_OF_FORCE(real, share_of_force, kernel_slope)
 
 // Adds the force of a source on a target.
-void add_force(const Parameters* p, const int* n, float4 mine, int4 source, float4 its,
-               float* sum) {
-  const float3 x = way_to(p, n, source);
-  const float square = square_of(x);
+void add_force(const Parameters* p, const coord* n, real4 mine, place4 source, real4 its,
+               real* sum) {
+  const real3 x = way_to(p, n, source);
+  const real square = square_of(x);
   if (!(square < 1)) return;
-  const float approach = (mine.x - its.x) * x.x + (mine.y - its.y) * x.y + (mine.z - its.z) * x.z;
-  const float share = share_of_force(p, approach, square, mine.w + its.w, weight_of(source));
+  const real approach = (mine.x - its.x) * x.x + (mine.y - its.y) * x.y + (mine.z - its.z) * x.z;
+  const real share = share_of_force(p, approach, square, mine.w + its.w, weight_of(source));
   sum[0] += share * x.x;
   sum[1] += share * x.y;
   sum[2] += share * x.z;
 }
 
 // The velocity of the image of a particle with the velocity v, see mirrored_velocity().
-float3 mirrored_velocity(const Parameters* p, const Mirror* m, float4 motion) {
-  float v[3] = {motion.x, motion.y, motion.z};
+real3 mirrored_velocity(const Parameters* p, const Mirror* m, real4 motion) {
+  real v[3] = {motion.x, motion.y, motion.z};
   for (int axis = 0; axis < 3; ++axis) {
     if (!reverses(p, m, axis)) continue;
     const int wall = 2 * axis + m->axes[axis] - 1;
     const bool has_no_slip = (p->no_slip >> wall) & 1;
     for (int k = 0; k < 3; ++k) {
-      const float of_wall = p->speeds_of_walls[3 * wall + k];
+      const real of_wall = p->speeds_of_walls[3 * wall + k];
       if (k == axis || has_no_slip) v[k] = -(v[k] - of_wall) + of_wall;
     }
   }
-  return (float3)(v[0], v[1], v[2]);
+  return (real3)(v[0], v[1], v[2]);
 }
 
 // Whether images in this mirror are viscous, see add_viscous_image_forces().
@@ -62,21 +62,21 @@ bool is_viscous(const Parameters* p, const Mirror* m) {
 }
 
 // Adds the force of the reflection of a source on a target. A solid has no viscous force of images.
-void add_force_of_image(const Parameters* p, const Mirror* m, const int* n, int is_target_solid,
-                        float4 mine, int4 source, float4 its, float* sum) {
-  int at[3];
+void add_force_of_image(const Parameters* p, const Mirror* m, const coord* n, int is_target_solid,
+                        real4 mine, place4 source, real4 its, real* sum) {
+  coord at[3];
   for (int k = 0; k < 3; ++k) at[k] = reflected(p, m, n[k], k);
-  const float3 x = way_to(p, at, source);
-  const float square = square_of(x);
+  const real3 x = way_to(p, at, source);
+  const real square = square_of(x);
   if (!(square < 1)) return;
-  const float force = -(mine.w + image_pressure(p, m, source, its.w));
-  const float share = force * (weight_of(source) * kernel_slope(sqrt(square)));
+  const real force = -(mine.w + image_pressure(p, m, source, its.w));
+  const real share = force * (weight_of(source) * kernel_slope(sqrt(square)));
   sum[0] += share * (reverses(p, m, 0) ? -x.x : x.x);
   sum[1] += share * (reverses(p, m, 1) ? -x.y : x.y);
   sum[2] += share * (reverses(p, m, 2) ? -x.z : x.z);
   if (is_target_solid || is_solid(source) || !is_viscous(p, m)) return;
-  const float3 v = mirrored_velocity(p, m, its);
-  const float drag = p->viscosity / (square + SOFTENING) *
+  const real3 v = mirrored_velocity(p, m, its);
+  const real drag = p->viscosity / (square + SOFTENING) *
                      (weight_of(source) * kernel_slope(sqrt(square)));
   sum[0] += drag * (x.x * x.x) * (mine.x - v.x);
   sum[1] += drag * (x.y * x.y) * (mine.y - v.y);
@@ -84,15 +84,15 @@ void add_force_of_image(const Parameters* p, const Mirror* m, const int* n, int 
 }
 
 // Adds the force of a source, or of the image of a source, on a target.
-void add_force_of(const Parameters* p, uint code, const int* n, int is_target_solid, float4 mine,
-                  int4 source, float4 its, float* sum) {
+void add_force_of(const Parameters* p, uint code, const coord* n, int is_target_solid, real4 mine,
+                  place4 source, real4 its, real* sum) {
   if (code == 0) {
     add_force(p, n, mine, source, its, sum);
     return;
   }
   const Mirror m = mirror_of(code);
   if (is_shift(p, &m)) {
-    int at[3];
+    coord at[3];
     for (int k = 0; k < 3; ++k) at[k] = reflected(p, &m, n[k], k);
     add_force(p, at, mine, source, its, sum);
   } else {
@@ -101,30 +101,30 @@ void add_force_of(const Parameters* p, uint code, const int* n, int is_target_so
 }
 
 // The acceleration by the central field at the integer position n.
-float field_at(const Parameters* p, int n, int axis) {
+real field_at(const Parameters* p, coord n, int axis) {
   const double x = p->origin[axis] + n / p->inverse_unit;
-  return (float)(p->field_strength * (p->field_center[axis] - x));
+  return (real)(p->field_strength * (p->field_center[axis] - x));
 }
 
 // The acceleration of a particle by the sum over pairs, gravity, central field and settling.
-float3 acceleration_by(const Parameters* p, const int* n, float4 mine, const float* sum) {
-  const float v[3] = {mine.x, mine.y, mine.z};
-  float a[3];
+real3 acceleration_by(const Parameters* p, const coord* n, real4 mine, const real* sum) {
+  const real v[3] = {mine.x, mine.y, mine.z};
+  real a[3];
   for (int k = 0; k < 3; ++k) {
     a[k] = p->gravity[k] + p->slope_factor * sum[k] - p->drag * (v[k] - p->still[k]);
     if (p->field_strength > 0) a[k] += field_at(p, n[k], k);
   }
-  return (float3)(a[0], a[1], a[2]);
+  return (real3)(a[0], a[1], a[2]);
 }
 
 // The acceleration of the particle in `slot`, see acceleration_by().
-float3 acceleration_of(const Parameters* p, int slot, global const int* begins,
-                       global const int4* sorted_place, global const float4* sorted_motion,
+real3 acceleration_of(const Parameters* p, int slot, global const int* begins,
+                       global const place4* sorted_place, global const real4* sorted_motion,
                        global const int* counts, global const uint* lists) {
-  const int4 own = sorted_place[slot];
-  const float4 mine = sorted_motion[slot];
-  const int n[3] = {own.x, own.y, own.z};
-  float sum[3] = {0, 0, 0};
+  const place4 own = sorted_place[slot];
+  const real4 mine = sorted_motion[slot];
+  const coord n[3] = {own.x, own.y, own.z};
+  real sum[3] = {0, 0, 0};
   FOR_EACH_NEIGHBOUR(p, slot, n, begins, counts, lists, {
     add_force_of(p, code, n, 0, mine, sorted_place[j], sorted_motion[j], sum);
   })
@@ -211,10 +211,10 @@ void add_forces_of_images(const Parameters* p, const Mirrors* m, Columns own, Co
 
 // Finds the accelerations of the particles in LANES slots from `first` on, except of solids.
 void find_accelerations(const Parameters* p, int first, global const int* begins,
-                        global const int4* sorted_place, global const float4* sorted_motion,
+                        global const place4* sorted_place, global const real4* sorted_motion,
                         global const int* counts, global const int* plain_counts,
-                        global const uint* lists, float3* a) {
-  global const float4* places = (global const float4*)sorted_place;
+                        global const uint* lists, real3* a) {
+  global const real4* places = (global const real4*)sorted_place;
   const Columns own = columns_at(places, first);
   const Columns mine = columns_at(sorted_motion, first);
   Sums sum = {0, 0, 0};
@@ -236,28 +236,28 @@ void find_accelerations(const Parameters* p, int first, global const int* begins
     sum.y += listed_share * x.y;
     sum.z += listed_share * x.z;
   })
-  float sums[3][LANES];
+  real sums[3][LANES];
   vstore16(sum.x, 0, sums[0]);
   vstore16(sum.y, 0, sums[1]);
   vstore16(sum.z, 0, sums[2]);
   for (int lane = 0; lane < LANES && first + lane < p->count + p->solids; ++lane) {
     const int slot = first + lane;
-    const int4 place = sorted_place[slot];
+    const place4 place = sorted_place[slot];
     if (is_solid(place)) continue;
     if (counts[slot] > p->list_length) {
       a[lane] = acceleration_of(p, slot, begins, sorted_place, sorted_motion, counts, lists);
       continue;
     }
-    const int n[3] = {place.x, place.y, place.z};
-    const float total[3] = {sums[0][lane], sums[1][lane], sums[2][lane]};
+    const coord n[3] = {place.x, place.y, place.z};
+    const real total[3] = {sums[0][lane], sums[1][lane], sums[2][lane]};
     a[lane] = acceleration_by(p, n, sorted_motion[slot], total);
   }
 }
 #else
 void find_accelerations(const Parameters* p, int first, global const int* begins,
-                        global const int4* sorted_place, global const float4* sorted_motion,
+                        global const place4* sorted_place, global const real4* sorted_motion,
                         global const int* counts, global const int* plain_counts,
-                        global const uint* lists, float3* a) {
+                        global const uint* lists, real3* a) {
   if (first >= p->count + p->solids || is_solid(sorted_place[first])) return;
   a[0] = acceleration_of(p, first, begins, sorted_place, sorted_motion, counts, lists);
 }
@@ -266,26 +266,26 @@ void find_accelerations(const Parameters* p, int first, global const int* begins
 // Extrapolates the pressure of the surrounding liquid to solids, see extrapolate_pressure().
 // p.gravity is the gravity on the liquid.
 kernel void find_solid_pressure(const Parameters p, global const int* begins,
-                                global const int4* sorted_place, global float4* sorted_motion,
-                                global const float* density, global const int* counts,
+                                global const place4* sorted_place, global real4* sorted_motion,
+                                global const real* density, global const int* counts,
                                 global const uint* lists) {
   const int slot = get_global_id(0);
   if (slot >= p.count + p.solids) return;
-  const int4 own = sorted_place[slot];
+  const place4 own = sorted_place[slot];
   if (!is_solid(own)) return;
-  const int n[3] = {own.x, own.y, own.z};
-  float weights = 0;
-  float pressures = 0;
-  float3 arms = 0;
+  const coord n[3] = {own.x, own.y, own.z};
+  real weights = 0;
+  real pressures = 0;
+  real3 arms = 0;
   FOR_EACH_NEIGHBOUR(&p, slot, n, begins, counts, lists, {
-    const int4 source = sorted_place[j];
+    const place4 source = sorted_place[j];
     if (is_solid(source)) continue;
-    const float3 x = way_from(&p, code, n, source);
-    const float square = square_of(x);
+    const real3 x = way_from(&p, code, n, source);
+    const real square = square_of(x);
     if (!(square < 1)) continue;
-    const float weight = weight_of(source) * kernel_value(sqrt(square));
-    const float s = density[j];
-    float pressure = sorted_motion[j].w * (s * s);
+    const real weight = weight_of(source) * kernel_value(sqrt(square));
+    const real s = density[j];
+    real pressure = sorted_motion[j].w * (s * s);
     if (code != 0) {
       const Mirror m = mirror_of(code);
       pressure = image_pressure(&p, &m, source, pressure);
@@ -294,46 +294,46 @@ kernel void find_solid_pressure(const Parameters p, global const int* begins,
     pressures += weight * pressure;
     arms += weight * x;
   })
-  const float fall = p.gravity[0] * arms.x + p.gravity[1] * arms.y + p.gravity[2] * arms.z;
-  const float sum = pressures + p.density * (fall * (p.unit / p.in_supports));
-  const float mean = weights > 0 ? sum / weights : 0;
-  sorted_motion[slot].w = p.is_filled ? mean : max(0.0f, mean);
+  const real fall = p.gravity[0] * arms.x + p.gravity[1] * arms.y + p.gravity[2] * arms.z;
+  const real sum = pressures + p.density * (fall * (p.unit / p.in_supports));
+  const real mean = weights > 0 ? sum / weights : 0;
+  sorted_motion[slot].w = p.is_filled ? mean : max((real)0, mean);
 }
 
 // The accelerations in the order of particles.
 kernel void find_acceleration(const Parameters p, global const int* begins,
-                              global const int* order, global const int4* sorted_place,
-                              global const float4* sorted_motion, global const int* counts,
+                              global const int* order, global const place4* sorted_place,
+                              global const real4* sorted_motion, global const int* counts,
                               global const int* plain_counts, global const uint* lists,
-                              global float4* acceleration) {
+                              global real4* acceleration) {
   const int first = LANES * get_global_id(0);
   if (first >= p.count + p.solids) return;
-  float3 a[LANES];
+  real3 a[LANES];
   find_accelerations(&p, first, begins, sorted_place, sorted_motion, counts, plain_counts, lists,
                      a);
   for (int lane = 0; lane < LANES && first + lane < p.count + p.solids; ++lane) {
     const int slot = first + lane;
-    if (!is_solid(sorted_place[slot])) acceleration[order[slot]] = (float4)(a[lane], 0);
+    if (!is_solid(sorted_place[slot])) acceleration[order[slot]] = (real4)(a[lane], 0);
   }
 }
 
 // Adds the forces of the liquid on the particles of solids, see add_tait_forces_on_solids(). `force`
 // is indexed by solid particle.
 kernel void add_forces_on_solids(const Parameters p, global const int* begins,
-                                 global const int* order, global const int4* sorted_place,
-                                 global const float4* sorted_motion, global const int* counts,
+                                 global const int* order, global const place4* sorted_place,
+                                 global const real4* sorted_motion, global const int* counts,
                                  global const uint* lists, global double* force) {
   const int slot = get_global_id(0);
   if (slot >= p.count + p.solids) return;
-  const int4 own = sorted_place[slot];
+  const place4 own = sorted_place[slot];
   if (!is_solid(own)) return;
-  const float4 mine = sorted_motion[slot];
-  const int n[3] = {own.x, own.y, own.z};
-  float sum[3] = {0, 0, 0};
+  const real4 mine = sorted_motion[slot];
+  const coord n[3] = {own.x, own.y, own.z};
+  real sum[3] = {0, 0, 0};
   FOR_EACH_NEIGHBOUR(&p, slot, n, begins, counts, lists, {
     if (is_solid(sorted_place[j])) continue;
     add_force_of(&p, code, n, 1, mine, sorted_place[j], sorted_motion[j], sum);
   })
-  const float factor = p.solid_factor * weight_of(own);
+  const real factor = p.solid_factor * weight_of(own);
   for (int k = 0; k < 3; ++k) force[3 * (order[slot] - p.count) + k] += (double)(factor * sum[k]);
 }

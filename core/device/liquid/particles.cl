@@ -1,9 +1,31 @@
 // Particles of one liquid, and of solids in it, in a vat: parameters, walls, and integer positions. One work-item computes one particle. Solids follow the liquid in the order of particles.
 //
 // Positions and velocities are in double precision, in the order of the particles. Sums over pairs
-// are in single precision. They read copies in the order of cells, whose positions are integers:
-// p.support units are one support radius, and 2^p.cell_bits units are one cell. Differences of such
-// positions are exact.
+// are in the precision of the scene, `real`. They read copies in the order of cells, whose positions
+// are integers: p.support units are one support radius, and 2^p.cell_bits units are one cell.
+// Differences of such positions are exact.
+
+#ifdef VAT_DOUBLE_PAIRS
+typedef double real;
+typedef double3 real3;
+typedef double4 real4;
+typedef long coord;
+typedef long4 place4;
+#define convert_real3 convert_double3
+#define convert_coord_rte convert_long_rte
+#define as_real as_double
+#define as_coord as_long
+#else
+typedef float real;
+typedef float3 real3;
+typedef float4 real4;
+typedef int coord;
+typedef int4 place4;
+#define convert_real3 convert_float3
+#define convert_coord_rte convert_int_rte
+#define as_real as_float
+#define as_coord as_int
+#endif
 
 typedef struct {
   double origin[3];
@@ -21,27 +43,27 @@ typedef struct {
   double prediction;
   double field_center[3];
   double field_strength;
-  float gravity[3];
-  float still[3];
-  float drag;
-  float fall[3];
-  float unit;
-  float in_supports;
-  float density;
-  float layer;
-  float stiffness;
-  float tension;
-  float slope_factor;
-  float viscosity;
-  float solid_factor;
-  float speeds_of_walls[18];
-  int twice_low[3];
-  int twice_high[3];
-  int periods[3];
+  real gravity[3];
+  real still[3];
+  real drag;
+  real fall[3];
+  real unit;
+  real in_supports;
+  real density;
+  real layer;
+  real stiffness;
+  real tension;
+  real slope_factor;
+  real viscosity;
+  real solid_factor;
+  real speeds_of_walls[18];
+  coord twice_low[3];
+  coord twice_high[3];
+  coord periods[3];
   int cells[3];
   int cell_bits;
   int reach;
-  int support;
+  coord support;
   int walls;
   int sides;
   int no_slip;
@@ -53,11 +75,11 @@ typedef struct {
   int list_length;
 } Parameters;
 
-// Limit of positions, so that differences of positions and images fit into 32 bits.
-#define PLACE_LIMIT (1 << 29)
+// Limit of positions, so that differences of positions and images fit into a coord.
+#define PLACE_LIMIT ((coord)1 << (8 * sizeof(coord) - 3))
 
-int cell_along(int place, int count, int bits) {
-  return clamp(place >> bits, 0, count - 1);
+int cell_along(coord place, int count, int bits) {
+  return clamp(place >> bits, (coord)0, (coord)(count - 1));
 }
 
 // Whether a position is in a box. In this form, a NaN fails.
@@ -103,15 +125,15 @@ bool reflect_at_walls(const Parameters* p, double3* at, double3* motion) {
 
 // The weight of a source is its rest volume times the scale of the kernel. It is stored with a
 // negative sign for solids.
-bool is_solid(int4 place) {
-  return as_float(place.w) < 0;
+bool is_solid(place4 place) {
+  return as_real(place.w) < 0;
 }
-float weight_of(int4 place) {
-  return fabs(as_float(place.w));
+real weight_of(place4 place) {
+  return fabs(as_real(place.w));
 }
 
 // The cell of an integer position.
-int cell_at(const Parameters* p, int4 n) {
+int cell_at(const Parameters* p, place4 n) {
   const int x = cell_along(n.x, p->cells[0], p->cell_bits);
   const int y = cell_along(n.y, p->cells[1], p->cell_bits);
   const int z = cell_along(n.z, p->cells[2], p->cell_bits);
@@ -119,23 +141,23 @@ int cell_at(const Parameters* p, int4 n) {
 }
 
 // The integer position along an axis.
-int place_along(const Parameters* p, double x, int axis, global int* status) {
+coord place_along(const Parameters* p, double x, int axis, global int* status) {
   const double image = wrapped(x, p->origin[axis], p->period[axis]);
   const double coordinate = (image - p->origin[axis]) * p->inverse_unit;
   // In this form, a NaN fails.
-  if (coordinate >= -PLACE_LIMIT && coordinate <= PLACE_LIMIT) return convert_int_rte(coordinate);
+  if (coordinate >= -PLACE_LIMIT && coordinate <= PLACE_LIMIT) return convert_coord_rte(coordinate);
   atomic_or(status + kFault, 1);
   return 0;
 }
 
 // Adds a particle with the velocity w to its cell.
-void enter_cell(const Parameters* p, int i, double3 x, float3 w, global const float* weight,
-                global int4* place, global float4* motion, global int* cell_of, global int* rank,
+void enter_cell(const Parameters* p, int i, double3 x, real3 w, global const real* weight,
+                global place4* place, global real4* motion, global int* cell_of, global int* rank,
                 global int* cell_counts, global int* status) {
-  const int4 n = (int4)(place_along(p, x.x, 0, status), place_along(p, x.y, 1, status),
-                        place_along(p, x.z, 2, status), as_int(weight[i]));
+  const place4 n = (place4)(place_along(p, x.x, 0, status), place_along(p, x.y, 1, status),
+                        place_along(p, x.z, 2, status), as_coord(weight[i]));
   place[i] = n;
-  motion[i] = (float4)(w, 0);
+  motion[i] = (real4)(w, 0);
   const int cell = cell_at(p, n);
   cell_of[i] = cell;
   rank[i] = atomic_inc(cell_counts + cell);
@@ -143,7 +165,7 @@ void enter_cell(const Parameters* p, int i, double3 x, float3 w, global const fl
 
 // Enters solids at rest into their cells.
 kernel void enter_solids(const Parameters p, global const double* solid_position,
-                         global const float* weight, global int4* place, global float4* motion,
+                         global const real* weight, global place4* place, global real4* motion,
                          global int* cell_of, global int* rank, global int* cell_counts,
                          global int* status) {
   const int b = get_global_id(0);
@@ -154,12 +176,12 @@ kernel void enter_solids(const Parameters p, global const double* solid_position
 
 // Enters moving solids into their cells.
 kernel void enter_moving_solids(const Parameters p, global const double* solid_position,
-                                global const double* solid_velocity, global const float* weight,
-                                global int4* place, global float4* motion, global int* cell_of,
+                                global const double* solid_velocity, global const real* weight,
+                                global place4* place, global real4* motion, global int* cell_of,
                                 global int* rank, global int* cell_counts, global int* status) {
   const int b = get_global_id(0);
   if (b >= p.solids) return;
-  enter_cell(&p, p.count + b, vload3(b, solid_position), convert_float3(vload3(b, solid_velocity)),
+  enter_cell(&p, p.count + b, vload3(b, solid_position), convert_real3(vload3(b, solid_velocity)),
              weight, place, motion, cell_of, rank, cell_counts, status);
 }
 
@@ -168,9 +190,9 @@ kernel void enter_moving_solids(const Parameters p, global const double* solid_p
 
 // Copies the particles in the order of cells.
 kernel void collect(const int count, global const int* cell_of, global const int* begins,
-                    global const int* unsorted, global const int4* place,
-                    global const float4* motion, global int* order, global int4* sorted_place,
-                    global float4* sorted_motion, global int* columns) {
+                    global const int* unsorted, global const place4* place,
+                    global const real4* motion, global int* order, global place4* sorted_place,
+                    global real4* sorted_motion, global int* columns) {
   const int t = get_global_id(0);
   if (t >= count) return;
   const int i = unsorted[t];
@@ -179,7 +201,7 @@ kernel void collect(const int count, global const int* cell_of, global const int
   sorted_place[slot] = place[i];
   sorted_motion[slot] = motion[i];
 #if LANES > 1
-  const int4 own = place[i];
+  const place4 own = place[i];
   columns[slot] = own.x;
   columns[slot + count + COLUMN_END] = own.y;
   columns[slot + 2 * (count + COLUMN_END)] = own.z;

@@ -26,12 +26,14 @@ Buffer::~Buffer() {
 }
 
 Result<std::unique_ptr<Program>> Program::create(const Device& device, const std::string& source,
-                                                 const std::string& options) {
+                                                 const std::string& options,
+                                                 bool has_double_pairs) {
   const Result<const Api*> api = load_api();
   if (!api) return api.errors();
   auto compiled = compile_once(device, source, options);
   if (!compiled) return compiled.errors();
-  std::unique_ptr<Program> program(new Program(*api.value(), std::move(compiled).value()));
+  std::unique_ptr<Program> program(
+      new Program(*api.value(), std::move(compiled).value(), has_double_pairs));
   cl_int code = CL_SUCCESS;
   program->queue_ = api.value()->create_queue(program->compiled_->context(), device.id, 0, &code);
   if (code == CL_SUCCESS) return program;

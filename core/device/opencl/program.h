@@ -51,13 +51,17 @@ class Buffer {
 class Program {
  public:
   /// Creates a queue and kernels of the program of compile_once(). Fails like compile_once().
+  /// With `has_double_pairs`, arguments with a function in_single_precision() are not converted by
+  /// it.
   static Result<std::unique_ptr<Program>> create(const Device& device, const std::string& source,
-                                                 const std::string& options);
+                                                 const std::string& options,
+                                                 bool has_double_pairs = false);
   Program(const Program&) = delete;
   Program& operator=(const Program&) = delete;
   ~Program();
 
   const Device& device() const { return compiled_->device(); }
+  bool has_double_pairs() const { return has_double_pairs_; }
 
   // The functions below throw DeviceFailure. Commands run in the order of their calls.
 
@@ -92,8 +96,8 @@ class Program {
  private:
   friend class Buffer;
 
-  Program(const Api& api, std::shared_ptr<const CompiledProgram> compiled)
-      : api_(api), compiled_(std::move(compiled)) {}
+  Program(const Api& api, std::shared_ptr<const CompiledProgram> compiled, bool has_double_pairs)
+      : api_(api), compiled_(std::move(compiled)), has_double_pairs_(has_double_pairs) {}
   /// A kernel keeps the arguments of its last run, so that a missing one would not be an error.
   struct Kernel {
     std::string name;
@@ -119,6 +123,13 @@ class Program {
   template <class T>
   void set_argument(const char* name, cl_kernel kernel, cl_uint index, const T& value) {
     static_assert(std::is_trivially_copyable_v<T>);
+    if constexpr (requires { value.in_single_precision(); }) {
+      if (!has_double_pairs_) {
+        const auto single = value.in_single_precision();
+        set_bytes(name, kernel, index, sizeof single, &single);
+        return;
+      }
+    }
     set_bytes(name, kernel, index, sizeof value, &value);
   }
   void set_bytes(const char* name, cl_kernel kernel, cl_uint index, std::size_t size,
@@ -130,6 +141,7 @@ class Program {
 
   const Api& api_;
   const std::shared_ptr<const CompiledProgram> compiled_;
+  const bool has_double_pairs_;
   cl_command_queue queue_ = nullptr;
   std::vector<Kernel> kernels_;
 };

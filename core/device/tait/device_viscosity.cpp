@@ -20,7 +20,7 @@ LiquidParameters only_with_damping(LiquidParameters p) {
   store(Vec3(Vec3::Zero()), p.gravity);
   store(Vec3(Vec3::Zero()), p.still);
   p.field_strength = 0;
-  for (float& speed : p.speeds_of_walls) speed = 0;
+  for (double& speed : p.speeds_of_walls) speed = 0;
   return p;
 }
 

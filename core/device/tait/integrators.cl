@@ -2,16 +2,16 @@
 // are the parameters at the end of a step of `dt`. The transport velocity moves the particles if
 // `has_transport` is set.
 
-double transport_of(const int has_transport, global const float4* transport, int i, int k) {
+double transport_of(const int has_transport, global const real4* transport, int i, int k) {
   if (!has_transport) return 0;
-  const float4 w = transport[i];
-  const float by[3] = {w.x, w.y, w.z};
+  const real4 w = transport[i];
+  const real by[3] = {w.x, w.y, w.z};
   return by[k];
 }
 
-double acceleration_along(global const float4* acceleration, int i, int k) {
-  const float4 a = acceleration[i];
-  const float of[3] = {a.x, a.y, a.z};
+double acceleration_along(global const real4* acceleration, int i, int k) {
+  const real4 a = acceleration[i];
+  const real of[3] = {a.x, a.y, a.z};
   return of[k];
 }
 
@@ -31,8 +31,8 @@ void end_liquid_step(const Parameters* p, int i, double3 x, double3 v, global do
 // Takes a step of symplectic Euler.
 kernel void take_liquid_euler_step(const Parameters p, const double dt, const int has_transport,
                                    global double* position, global double* velocity,
-                                   global const float4* acceleration,
-                                   global const float4* transport, global int* status) {
+                                   global const real4* acceleration,
+                                   global const real4* transport, global int* status) {
   const int i = get_global_id(0);
   if (i >= p.count) return;
   const double3 v = vload3(i, velocity) + dt * convert_double3(acceleration[i].xyz);
@@ -50,8 +50,8 @@ kernel void advance_liquid_stage(const int count, const double weight, const dou
                                  global const double* start_velocity,
                                  global double* sum_of_velocity,
                                  global double* sum_of_acceleration,
-                                 global const float4* acceleration,
-                                 global const float4* transport) {
+                                 global const real4* acceleration,
+                                 global const real4* transport) {
   const int i = get_global_id(0);
   if (i >= count) return;
   for (int k = 0; k < 3; ++k) {

@@ -30,9 +30,13 @@ using opencl::Program;
 
 /// The integrated variables, in the order of particles.
 struct TaitState {
-  TaitState(Program& program, std::size_t n)
-      : motion(program, n), acceleration(program, n * sizeof(Float4)) {}
-  static constexpr std::size_t kBytes = DeviceMotion::kBytes + sizeof(Float4);
+  TaitState(Program& program, const Model& model)
+      : motion(program, model.liquid_count),
+        acceleration(program, model.liquid_count * bytes_of_acceleration(model)) {}
+  static std::size_t bytes_of_acceleration(const Model& model) { return 4 * bytes_of_real(model); }
+  static std::size_t bytes_for(const Model& model) {
+    return model.liquid_count * (DeviceMotion::kBytes + bytes_of_acceleration(model));
+  }
 
   DeviceMotion motion;
   Buffer acceleration;
@@ -43,10 +47,10 @@ struct AdaptiveSteps {
   AdaptiveSteps(Program& program, const Model& model)
       : partial(program, bytes_of_partial(model.liquid_count)),
         control(program, model, partial),
-        before(program, model.liquid_count) {}
+        before(program, model) {}
   static std::size_t bytes_for(const Model& model) {
     return bytes_of_partial(model.liquid_count) + DeviceStepControl::bytes_for(model) +
-           model.liquid_count * TaitState::kBytes;
+           TaitState::bytes_for(model);
   }
 
   Buffer partial;
@@ -79,8 +83,8 @@ class TaitMethod : public VerletMethod {
         geometry_(geometry),
         solids_(make_moving_solids(program, model())),
         particles_(program, model(), geometry, moving_particles(solids_.get())),
-        now_(program, model().liquid_count),
-        start_(program, model().liquid_count) {
+        now_(program, model()),
+        start_(program, model()) {
     if (!keeps_forces(model())) integration_.emplace(program, model());
     if (is_adaptive(model())) adaptive_.emplace(program, model());
     if (model().has_surface_tension) surface_.emplace(program, model());
@@ -139,7 +143,7 @@ class TaitMethod : public VerletMethod {
   std::optional<DeviceNozzles> nozzles_;      ///< only if particles are in tubes
   std::optional<DeviceViscosity> viscosity_;  ///< only if a step may not resolve the viscosity
   ReadMotion read_;
-  std::vector<Float4> accelerations_;
+  std::vector<double> accelerations_;  ///< four numbers for each particle
 };
 
 void TaitMethod::write(const State& state) {
@@ -149,22 +153,21 @@ void TaitMethod::write(const State& state) {
   if (solids_) solids_->write(state);
   if (transport_) transport_->write(state.forces);
   if (adaptive_) adaptive_->history = state.history;
-  accelerations_.assign(n, {});
+  accelerations_.assign(4 * n, 0);
   if (state.forces_current) {
     for (std::size_t i = 0; i < n; ++i) {
-      const Vec3 a = state.forces.particle[i] * model().inverse_mass[i];
-      accelerations_[i] = {static_cast<float>(a.x()), static_cast<float>(a.y()),
-                           static_cast<float>(a.z()), 0};
+      Eigen::Map<Vec3>(accelerations_.data() + 4 * i) =
+          state.forces.particle[i] * model().inverse_mass[i];
     }
   }
-  program_.write(now_.acceleration, std::span<const Float4>(accelerations_));
+  write_reals(program_, now_.acceleration, accelerations_);
 }
 
 void TaitMethod::read(State& state) {
   const std::size_t n = model().liquid_count;
-  accelerations_.resize(n);
+  accelerations_.resize(4 * n);
   read_.read(program_, now_.motion, n);
-  program_.read(now_.acceleration, std::span<Float4>(accelerations_));
+  read_reals(program_, now_.acceleration, accelerations_);
   if (solids_) solids_->read();
   if (transport_) transport_->read();
   read_.copy_to(state.now);
@@ -173,10 +176,7 @@ void TaitMethod::read(State& state) {
   state.forces.rigid_force.assign(model().rigid_bodies.size(), Vec3::Zero());
   state.forces.rigid_torque.assign(model().rigid_bodies.size(), Vec3::Zero());
   for (std::size_t i = 0; i < n; ++i) {
-    const Float4& a = accelerations_[i];
-    state.forces.particle[i] =
-        model().mass[i] *
-        Vec3(static_cast<Real>(a.x), static_cast<Real>(a.y), static_cast<Real>(a.z));
+    state.forces.particle[i] = model().mass[i] * Eigen::Map<const Vec3>(&accelerations_[4 * i]);
   }
   if (transport_) transport_->copy_to(state.forces);
   state.forces_current = keeps_forces(model()) && !releases_body(model(), state.step_count);
@@ -189,7 +189,8 @@ void TaitMethod::read(State& state) {
 
 void TaitMethod::copy(const TaitState& from, TaitState& to) {
   to.motion.copy_from(from.motion);
-  program_.copy(from.acceleration, to.acceleration, model().liquid_count * sizeof(Float4));
+  program_.copy(from.acceleration, to.acceleration,
+                model().liquid_count * TaitState::bytes_of_acceleration(model()));
 }
 
 void TaitMethod::save() {
@@ -369,8 +370,8 @@ bool TaitMethod::take_nominal_steps(const NominalSteps& steps, AdvanceReport& re
 std::size_t bytes_for_tait(const Model& model) {
   const LiquidGeometry geometry(model, guard_bounds(model));
   const bool moves = solids_move(model);
-  return DeviceParticles::bytes_for(model, geometry, moves) +
-         2 * model.liquid_count * TaitState::kBytes + DeviceNozzles::bytes_for(model) +
+  return DeviceParticles::bytes_for(model, geometry, moves) + 2 * TaitState::bytes_for(model) +
+         DeviceNozzles::bytes_for(model) +
          (keeps_forces(model) ? 0 : DeviceLiquidIntegration::bytes_for(model)) +
          (is_adaptive(model) ? AdaptiveSteps::bytes_for(model) : 0) +
          (model.has_surface_tension ? DeviceSurface::bytes_for(model) : 0) +

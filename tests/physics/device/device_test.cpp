@@ -111,6 +111,30 @@ TEST(Device, HasTheAccuracyOfTheCpuWithTheCubicSpline) {
   expect_accuracy_of_cpu(scene, kScenes, 30);
 }
 
+// The difference of the CPU with single precision is greater.
+TEST(Device, HasTheMotionOfTheCpuWithDoublePrecision) {
+  constexpr std::uint32_t kSteps = 20;
+  std::vector<SceneCase> cases(std::begin(kCommonScenes), std::end(kCommonScenes));
+  cases.push_back({"cubic spline", [](Scene& s) { s.kernel = KernelId::cubic_spline; }});
+  cases.push_back({"Heun", [](Scene& s) { s.numerics.integrator = IntegratorId::heun; }});
+  cases.push_back({"no-slip walls", set_no_slip});
+  cases.push_back({"moving ball in a sliding vat", [](Scene& s) {
+                     add_fixed_bodies(s);
+                     s.bodies[1].fixed = false;
+                     s.bodies[1].velocity = {-0.5, 0, 0};
+                     s.vat->motion = SlideMotion{Vec3(1, 0, 0), 0.1, 0.2};
+                   }});
+  for (const SceneCase& one : cases) {
+    SCOPED_TRACE(one.name);
+    Scene scene = make_column();
+    one.edit(scene);
+    Simulation single = make_advanced(scene, kSteps);
+    scene.pair_precision = PairPrecision::double_precision;
+    expect_motion_of_cpu(scene, kSteps);
+    EXPECT_GT(difference(single, make_advanced(scene, kSteps)), rounding_after(kSteps));
+  }
+}
+
 // The device compiles its kernels for the scene.
 TEST(Device, ChangesTheKernel) {
   Simulation simulation = make_on_device(make_column());
@@ -288,7 +312,11 @@ TEST(Device, RefusesFeaturesThatItLacks) {
          s.central_field = CentralField{{0, 0, 0}, 1};
        }},
       {"/sleeping", [](Scene& s) { s.sleeping = Sleeping{}; }},
-      {"/pair_precision", [](Scene& s) { s.pair_precision = PairPrecision::double_precision; }},
+      {"/pair_precision",
+       [](Scene& s) {
+         s.pair_precision = PairPrecision::double_precision;
+         s.numerics.control = StepControl::adaptive;
+       }},
       {"/numerics/control",
        [](Scene& s) {
          s.numerics.integrator = IntegratorId::symplectic_euler;
