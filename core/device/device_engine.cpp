@@ -42,8 +42,8 @@ std::string lanes_option(const opencl::Device& device) {
 
 class DeviceEngine : public StepEngine {
  public:
-  /// `options` are those of `program`, which is for scenes with the kernel wendland_c2 and single
-  /// precision.
+  /// `options` are those of `program`, which is for scenes with the kernel wendland_c2, single
+  /// precision and one liquid.
   DeviceEngine(std::unique_ptr<Program> program, std::string options, DeviceArithmetic arithmetic)
       : device_(program->device()),
         options_(std::move(options)),
@@ -56,13 +56,14 @@ class DeviceEngine : public StepEngine {
   Status read(State& state) override;
 
  private:
-  /// Creates the program for the kernel and the precision of a scene, if the present program is for
-  /// others.
+  /// Creates the program for the kernel, precision and liquids of a scene, if the present program
+  /// is for others.
   Status adapt_program(const Model& model);
 
   const opencl::Device device_;
   const std::string options_;
   KernelId kernel_ = KernelId::wendland_c2;  ///< of program_
+  bool has_table_ = false;                   ///< of liquids, in program_
   std::unique_ptr<Program> program_;
   std::string name_;
   std::unique_ptr<DeviceMethod> method_;  ///< of the bound model
@@ -71,20 +72,23 @@ class DeviceEngine : public StepEngine {
 Status DeviceEngine::adapt_program(const Model& model) {
   const KernelId kernel = model.scene.kernel;
   const bool is_double = has_double_pairs(model);
-  if (kernel == kernel_ && is_double == program_->has_double_pairs()) return {};
+  const bool has_table = has_table_of_liquids(model);
+  if (kernel == kernel_ && is_double == program_->has_double_pairs() && has_table == has_table_) {
+    return {};
+  }
   std::string options = options_;
   opencl::Device device = device_;
   if (kernel == KernelId::cubic_spline) options += " -DVAT_CUBIC_SPLINE";
-  if (is_double) {
-    options += " -DVAT_DOUBLE_PAIRS";
-    device.lanes = 1;  // vectors are in single precision
-  }
+  if (is_double) options += " -DVAT_DOUBLE_PAIRS";
+  if (has_table) options += " -DVAT_SEVERAL_LIQUIDS";
+  if (is_double || has_table) device.lanes = 1;  // vectors have neither
   options += lanes_option(device);
   Result<std::unique_ptr<Program>> program =
       Program::create(device, device_kernels(), options, is_double);
   if (!program) return program.errors();
   program_ = std::move(program).value();
   kernel_ = kernel;
+  has_table_ = has_table;
   return {};
 }
 

@@ -7,6 +7,7 @@
 #include "core/damping/damping_solve.h"
 #include "core/device/liquid/device_step_control.h"
 #include "core/device/solid/solid_geometry.h"
+#include "core/model/acting_forces.h"
 #include "core/numerics/step_limits.h"
 
 namespace vat {
@@ -46,6 +47,14 @@ class Missing {
   void check_laws();
   void check_projections(const std::string& path);
   void check_motions();
+  /// Returns whether the scene has sums over pairs that have neither double precision nor several
+  /// liquids on devices.
+  bool has_further_sums() const {
+    return is_incompressible() || model_.has_surface_tension || model_.cohesion ||
+           model_.is_filled || may_solve_viscosity(model_) ||
+           scene_.numerics.control == StepControl::adaptive;
+  }
+  bool needs_one_liquid() const { return has_further_sums() || has_viscous_images(model_); }
   bool is_incompressible() const {
     return model_.liquid_count > 0 && scene_.pressure_solver == PressureSolver::incompressible;
   }
@@ -61,9 +70,12 @@ void Missing::check_body(std::size_t index) {
   const bool has_liquid = model_.liquid_count > 0;
   reject(!has_liquid && body.kind == BodyKind::liquid, path + "/kind",
          "must be deformable or rigid in a scene whose liquids have no particles");
-  if (body.kind == BodyKind::liquid && model_.is_coupled) {
-    reject(model_.bodies[index].material != model_.material[0], path + "/material",
-           "must be the material of the other liquids");
+  if (body.kind == BodyKind::liquid && model_.is_coupled && needs_one_liquid()) {
+    reject(
+        model_.bodies[index].material != model_.material[0], path + "/material",
+        "must be the material of the other liquids, with adaptive steps, incompressible liquids, "
+        "surface tension, viscous walls, liquids that fill their world, and steps that do not "
+        "resolve the viscosity");
   }
   if (body.kind != BodyKind::rigid) return;
   reject(body.motion.has_value() && !body.angular_velocity.isZero(0), path + "/angular_velocity",
@@ -93,11 +105,9 @@ void Missing::check_gas() {
 }
 
 void Missing::check_liquid() {
-  const bool needs_single = is_incompressible() || model_.has_surface_tension || model_.cohesion ||
-                            model_.is_filled || may_solve_viscosity(model_) ||
-                            scene_.numerics.control == StepControl::adaptive;
   reject(
-      scene_.pair_precision != PairPrecision::single_precision && needs_single, "/pair_precision",
+      scene_.pair_precision != PairPrecision::single_precision && has_further_sums(),
+      "/pair_precision",
       "must be single with adaptive steps, incompressible liquids, surface tension, liquids that "
       "fill their world, and steps that do not resolve the viscosity");
   reject(is_incompressible() && !scene_.forces.pressure, "/forces/pressure",

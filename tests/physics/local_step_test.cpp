@@ -4,10 +4,12 @@
 #include <cmath>
 
 #include "core/guard/guard.h"
+#include "core/state/controls.h"
 #include "core/stepping/control/step_control.h"
 #include "core/stepping/local_levels.h"
 #include "core/stepping/local_step.h"
 #include "core/stepping/step_plan.h"
+#include "core/stepping/workspace.h"
 #include "tests/support/mixed_scenes.h"
 #include "tests/support/same_bits.h"
 

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "core/device/opencl/program.h"
+#include "core/liquid/pairs/coupled_pairs.h"
 #include "core/model/model.h"
 #include "core/scene/scene.h"
 #include "core/types.h"
@@ -44,6 +45,10 @@ void store_central_field(const Scene& scene, Parameters& parameters) {
 /// Returns whether sums over pairs of liquids are in double precision.
 inline bool has_double_pairs(const Model& model) {
   return model.is_coupled && model.scene.pair_precision == PairPrecision::double_precision;
+}
+/// Returns whether the kernels of tait have a table of liquids.
+inline bool has_table_of_liquids(const Model& model) {
+  return model.is_coupled && !model.is_incompressible && has_several_liquids(model);
 }
 /// Returns the bytes of a number in the precision of these sums.
 inline std::size_t bytes_of_real(const Model& model) {

@@ -12,6 +12,8 @@ using opencl::Program;
 // A multiple of LIST_GROUP of neighbours.cl.
 constexpr std::size_t kListGroup = 32;
 
+constexpr std::size_t kLiquidNumbers = 7;
+
 constexpr std::size_t kNumber = sizeof(std::int32_t);
 
 std::size_t list_entries(std::size_t particles, const LiquidGeometry& geometry) {
@@ -49,7 +51,9 @@ DeviceParticles::DeviceParticles(Program& program, const Model& model,
       weight_(program, count_ * bytes_of_real(model)),
       place_(program, count_ * 4 * bytes_of_real(model)),
       motion_(program, count_ * 4 * bytes_of_real(model)),
-      moving_(moving) {
+      moving_(moving),
+      has_table_(has_table_of_liquids(model)) {
+  if (has_table_) write_table(model);
   const Real scale = model.liquids[model.material[0]]->kernel.scale();
   std::vector<double> weights;
   for (std::size_t i = 0; i < count_; ++i) {
@@ -72,7 +76,40 @@ std::size_t DeviceParticles::bytes_for(const Model& model, const LiquidGeometry&
          (list_entries(model.particle_count, geometry) + column_numbers(model.particle_count)) *
              kNumber +
          sizeof kSelectedLanes +
+         (has_table_of_liquids(model)
+              ? 2 * model.particle_count +
+                    model.liquids.size() * kLiquidNumbers * bytes_of_real(model)
+              : 0) +
          DeviceCells::bytes_for(model.particle_count, geometry.cell_count());
+}
+
+void DeviceParticles::write_table(const Model& model) {
+  const LiquidModel& first = *model.liquids[model.material[0]];
+  std::vector<double> table;
+  std::vector<std::uint8_t> index_of_material(model.liquids.size());
+  for (std::size_t m = 0; m < model.liquids.size(); ++m) {
+    if (!model.liquids[m]) continue;
+    const LiquidModel& liquid = *model.liquids[m];
+    index_of_material[m] = static_cast<std::uint8_t>(table.size() / kLiquidNumbers);
+    const Real slope = slope_factor(model, liquid);
+    // The members of Liquid, see particles.cl.
+    const Real values[kLiquidNumbers] = {
+        scale_factor(model, liquid),
+        liquid.rest_density,
+        liquid.rest_density * liquid.spacing / (first.rest_density * first.spacing),
+        liquid.rest_density * liquid.stiffness,
+        slope / liquid.rest_density,
+        liquid.central_viscosity / liquid.support_radius,
+        slope / slope_factor(model, first)};
+    table.insert(table.end(), std::begin(values), std::end(values));
+  }
+  std::vector<std::uint8_t> indices(count_, index_of_material[model.material[0]]);
+  for (std::size_t i = 0; i < liquid_count_; ++i) indices[i] = index_of_material[model.material[i]];
+  liquids_ = opencl::Buffer(program_, table.size() * bytes_of_real(model));
+  liquid_of_ = opencl::Buffer(program_, count_);
+  liquid_in_ = opencl::Buffer(program_, count_);
+  write_reals(program_, liquids_, table);
+  program_.write(liquid_of_, std::span<const std::uint8_t>(indices));
 }
 
 void DeviceParticles::enter_solids(const LiquidParameters& p) {
@@ -89,8 +126,15 @@ void DeviceParticles::enter_solids(const LiquidParameters& p) {
 
 void DeviceParticles::sort() {
   cells.sort();
-  program_.run("collect", count_, static_cast<std::int32_t>(count_), cells.cell_of, cells.begins,
-               cells.unsorted, place_, motion_, order, sorted_place, sorted_motion, columns);
+  const auto collect = [&](const auto&... of_liquids) {
+    program_.run("collect", count_, number_of(count_), cells.cell_of, cells.begins, cells.unsorted,
+                 place_, motion_, order, sorted_place, sorted_motion, columns, of_liquids...);
+  };
+  if (has_table_) {
+    collect(liquid_of_, liquid_in_);
+  } else {
+    collect();
+  }
 }
 
 void DeviceParticles::write_solids(const Configuration& from) {
@@ -101,13 +145,13 @@ void DeviceParticles::write_solids(const Configuration& from) {
 
 void DeviceParticles::find_solid_pressure(const LiquidParameters& p) {
   if (count_ == liquid_count_) return;
-  program_.run("find_solid_pressure", count_, p, cells.begins, sorted_place, sorted_motion, density,
-               neighbour_counts, neighbours);
+  run_over_pairs("find_solid_pressure", p, cells.begins, sorted_place, sorted_motion, density,
+                 neighbour_counts, neighbours);
 }
 
 void DeviceParticles::add_forces_on_solids(const LiquidParameters& p, const opencl::Buffer& force) {
-  program_.run("add_forces_on_solids", count_, p, cells.begins, order, sorted_place, sorted_motion,
-               neighbour_counts, neighbours, force);
+  run_over_pairs("add_forces_on_solids", p, cells.begins, order, sorted_place, sorted_motion,
+                 neighbour_counts, neighbours, force);
 }
 
 }  // namespace vat

@@ -55,6 +55,24 @@ class DeviceParticles {
     enter_solids(p);
     sort();
   }
+  /// Runs a kernel over pairs of all particles, with the table of liquids if there is one.
+  template <class... Arguments>
+  void run_over_pairs(const char* name, const Arguments&... arguments) {
+    if (has_table_) {
+      program_.run(name, count_, arguments..., liquids_, liquid_in_);
+    } else {
+      program_.run(name, count_, arguments...);
+    }
+  }
+  /// The same with run_in_lanes().
+  template <class... Arguments>
+  void run_over_pairs_in_lanes(const char* name, const Arguments&... arguments) {
+    if (has_table_) {
+      run_over_pairs(name, arguments...);  // programs with a table have one lane
+    } else {
+      program_.run_in_lanes(name, count_, arguments...);
+    }
+  }
   /// Extrapolates the pressure to the solids, if there are any.
   void find_solid_pressure(const LiquidParameters& p);
   /// Adds the forces of the liquid on solids to `force`, after find_solid_pressure().
@@ -81,6 +99,7 @@ class DeviceParticles {
   DeviceCounters counters;
 
  private:
+  void write_table(const Model& model);
   void enter_solids(const LiquidParameters& p);
   void sort();
 
@@ -90,6 +109,8 @@ class DeviceParticles {
   opencl::Buffer weight_, place_, motion_;  // in the order of particles
   const std::optional<MovingSolids> moving_;
   opencl::Buffer solid_position_;  ///< only with solids at rest
+  const bool has_table_;
+  opencl::Buffer liquids_, liquid_of_, liquid_in_;  ///< table, and its indices by particle and slot
 };
 
 }  // namespace vat

@@ -120,15 +120,18 @@ real3 acceleration_by(const Parameters* p, const coord* n, real4 mine, const rea
 // The acceleration of the particle in `slot`, see acceleration_by().
 real3 acceleration_of(const Parameters* p, int slot, global const int* begins,
                        global const place4* sorted_place, global const real4* sorted_motion,
-                       global const int* counts, global const uint* lists) {
-  const place4 own = sorted_place[slot];
+                       global const int* counts, global const uint* lists LIQUIDS) {
+  const place4 place = sorted_place[slot];
   const real4 mine = sorted_motion[slot];
-  const coord n[3] = {own.x, own.y, own.z};
+  const coord n[3] = {place.x, place.y, place.z};
   real sum[3] = {0, 0, 0};
+  COPY_PARAMETERS(own, p);
+  SET_TARGET(own, slot)
   FOR_EACH_NEIGHBOUR(p, slot, n, begins, counts, lists, {
-    add_force_of(p, code, n, 0, mine, sorted_place[j], sorted_motion[j], sum);
+    SET_SOURCE(own, p, 0, slot, j, sorted_place[j])
+    add_force_of(own, code, n, 0, mine, sorted_place[j], sorted_motion[j], sum);
   })
-  return acceleration_by(p, n, mine, sum);
+  return acceleration_by(own, n, mine, sum);
 }
 
 #if LANES > 1
@@ -257,9 +260,10 @@ void find_accelerations(const Parameters* p, int first, global const int* begins
 void find_accelerations(const Parameters* p, int first, global const int* begins,
                         global const place4* sorted_place, global const real4* sorted_motion,
                         global const int* counts, global const int* plain_counts,
-                        global const uint* lists, real3* a) {
+                        global const uint* lists, real3* a LIQUIDS) {
   if (first >= p->count + p->solids || is_solid(sorted_place[first])) return;
-  a[0] = acceleration_of(p, first, begins, sorted_place, sorted_motion, counts, lists);
+  a[0] = acceleration_of(p, first, begins, sorted_place, sorted_motion, counts,
+                         lists PASS_LIQUIDS);
 }
 #endif
 
@@ -268,7 +272,7 @@ void find_accelerations(const Parameters* p, int first, global const int* begins
 kernel void find_solid_pressure(const Parameters p, global const int* begins,
                                 global const place4* sorted_place, global real4* sorted_motion,
                                 global const real* density, global const int* counts,
-                                global const uint* lists) {
+                                global const uint* lists LIQUIDS) {
   const int slot = get_global_id(0);
   if (slot >= p.count + p.solids) return;
   const place4 own = sorted_place[slot];
@@ -277,6 +281,7 @@ kernel void find_solid_pressure(const Parameters p, global const int* begins,
   real weights = 0;
   real pressures = 0;
   real3 arms = 0;
+  COPY_PARAMETERS(with, &p);
   FOR_EACH_NEIGHBOUR(&p, slot, n, begins, counts, lists, {
     const place4 source = sorted_place[j];
     if (is_solid(source)) continue;
@@ -288,11 +293,12 @@ kernel void find_solid_pressure(const Parameters p, global const int* begins,
     real pressure = sorted_motion[j].w * (s * s);
     if (code != 0) {
       const Mirror m = mirror_of(code);
-      pressure = image_pressure(&p, &m, source, pressure);
+      SET_SOURCE(with, &p, 1, slot, j, source)
+      pressure = image_pressure(with, &m, source, pressure);
     }
     weights += weight;
     pressures += weight * pressure;
-    arms += weight * x;
+    arms += DENSITY_WEIGHT(&p, j, weight) * x;
   })
   const real fall = p.gravity[0] * arms.x + p.gravity[1] * arms.y + p.gravity[2] * arms.z;
   const real sum = pressures + p.density * (fall * (p.unit / p.in_supports));
@@ -305,12 +311,12 @@ kernel void find_acceleration(const Parameters p, global const int* begins,
                               global const int* order, global const place4* sorted_place,
                               global const real4* sorted_motion, global const int* counts,
                               global const int* plain_counts, global const uint* lists,
-                              global real4* acceleration) {
+                              global real4* acceleration LIQUIDS) {
   const int first = LANES * get_global_id(0);
   if (first >= p.count + p.solids) return;
   real3 a[LANES];
   find_accelerations(&p, first, begins, sorted_place, sorted_motion, counts, plain_counts, lists,
-                     a);
+                     a PASS_LIQUIDS);
   for (int lane = 0; lane < LANES && first + lane < p.count + p.solids; ++lane) {
     const int slot = first + lane;
     if (!is_solid(sorted_place[slot])) acceleration[order[slot]] = (real4)(a[lane], 0);
@@ -322,7 +328,7 @@ kernel void find_acceleration(const Parameters p, global const int* begins,
 kernel void add_forces_on_solids(const Parameters p, global const int* begins,
                                  global const int* order, global const place4* sorted_place,
                                  global const real4* sorted_motion, global const int* counts,
-                                 global const uint* lists, global double* force) {
+                                 global const uint* lists, global double* force LIQUIDS) {
   const int slot = get_global_id(0);
   if (slot >= p.count + p.solids) return;
   const place4 own = sorted_place[slot];
@@ -330,9 +336,13 @@ kernel void add_forces_on_solids(const Parameters p, global const int* begins,
   const real4 mine = sorted_motion[slot];
   const coord n[3] = {own.x, own.y, own.z};
   real sum[3] = {0, 0, 0};
+  COPY_PARAMETERS(with, &p);
   FOR_EACH_NEIGHBOUR(&p, slot, n, begins, counts, lists, {
-    if (is_solid(sorted_place[j])) continue;
-    add_force_of(&p, code, n, 1, mine, sorted_place[j], sorted_motion[j], sum);
+    place4 source = sorted_place[j];
+    if (is_solid(source)) continue;
+    SET_SOURCE(with, &p, 1, slot, j, source)
+    SET_SLOPE_WEIGHT(source, j)
+    add_force_of(with, code, n, 1, mine, source, sorted_motion[j], sum);
   })
   const real factor = p.solid_factor * weight_of(own);
   for (int k = 0; k < 3; ++k) force[3 * (order[slot] - p.count) + k] += (double)(factor * sum[k]);

@@ -75,6 +75,64 @@ typedef struct {
   int list_length;
 } Parameters;
 
+// Kernels of scenes with several liquids have a table of them, and the index of the liquid in each
+// slot; for solids, that of the first particle. They use copies of the parameters with the values of
+// the liquids of a pair.
+#ifdef VAT_SEVERAL_LIQUIDS
+typedef struct {
+  real density_factor;
+  real density;
+  real layer_share;
+  real stiffness;
+  real slope_factor;
+  real viscosity;
+  real slope_weight;
+} Liquid;
+#define LIQUIDS , global const Liquid* liquids, global const uchar* liquid_in
+#define PASS_LIQUIDS , liquids, liquid_in
+#define COPY_PARAMETERS(own, p)                                                \
+  Parameters own##_copy = *(p);                                                \
+  Parameters* own = &own##_copy
+// Sets the values of the target in `slot`.
+#define SET_TARGET(own, slot)                                                  \
+  {                                                                            \
+    const Liquid of_target = liquids[liquid_in[slot]];                            \
+    own->stiffness = of_target.stiffness;                                         \
+    own->slope_factor = of_target.slope_factor;                                   \
+  }
+// Sets the values of the source in slot j. Between liquids, the viscosity is 2 a b / (a + b), see
+// set_liquid_viscosities(); between a liquid and a solid, that of the liquid.
+#define SET_SOURCE(own, p, is_target_solid, slot, j, place)                    \
+  {                                                                            \
+    const Liquid of_source = liquids[liquid_in[j]];                               \
+    own->density = of_source.density;                                             \
+    own->layer = (p)->layer * of_source.layer_share;                              \
+    const real a = liquids[liquid_in[slot]].viscosity;                         \
+    const real b = of_source.viscosity;                                           \
+    own->viscosity = is_target_solid      ? b                                  \
+                     : is_solid(place)    ? a                                  \
+                     : a + b > 0          ? 2 * a * b / (a + b)                \
+                                          : 0;                                 \
+  }
+// Scales the sum of weights and the own weight of a target to its kernel.
+#define SCALE_DENSITY(place, sum, slot)                                        \
+  sum *= liquids[liquid_in[slot]].density_factor;                              \
+  place.w = as_coord(as_real(place.w) * liquids[liquid_in[slot]].density_factor);
+// Weights of a source in sums over gradients for solids, and in the hydrostatic pressure of solids.
+#define SET_SLOPE_WEIGHT(place, j)                                             \
+  place.w = as_coord(as_real(place.w) * liquids[liquid_in[j]].slope_weight);
+#define DENSITY_WEIGHT(p, j, weight) (weight * (liquids[liquid_in[j]].density / (p)->density))
+#else
+#define LIQUIDS
+#define PASS_LIQUIDS
+#define COPY_PARAMETERS(own, p) const Parameters* own = p
+#define SET_TARGET(own, slot)
+#define SET_SOURCE(own, p, is_target_solid, slot, j, place)
+#define SCALE_DENSITY(place, sum, slot)
+#define SET_SLOPE_WEIGHT(place, j)
+#define DENSITY_WEIGHT(p, j, weight) weight
+#endif
+
 // Limit of positions, so that differences of positions and images fit into a coord.
 #define PLACE_LIMIT ((coord)1 << (8 * sizeof(coord) - 3))
 
@@ -192,7 +250,11 @@ kernel void enter_moving_solids(const Parameters p, global const double* solid_p
 kernel void collect(const int count, global const int* cell_of, global const int* begins,
                     global const int* unsorted, global const place4* place,
                     global const real4* motion, global int* order, global place4* sorted_place,
-                    global real4* sorted_motion, global int* columns) {
+                    global real4* sorted_motion, global int* columns
+#ifdef VAT_SEVERAL_LIQUIDS
+                    , global const uchar* liquid_of, global uchar* liquid_in
+#endif
+                    ) {
   const int t = get_global_id(0);
   if (t >= count) return;
   const int i = unsorted[t];
@@ -200,6 +262,9 @@ kernel void collect(const int count, global const int* cell_of, global const int
   order[slot] = i;
   sorted_place[slot] = place[i];
   sorted_motion[slot] = motion[i];
+#ifdef VAT_SEVERAL_LIQUIDS
+  liquid_in[slot] = liquid_of[i];
+#endif
 #if LANES > 1
   const place4 own = place[i];
   columns[slot] = own.x;

@@ -119,10 +119,10 @@ kernel void find_pressure(const Parameters p, global const int* begins,
                           global const place4* sorted_place, global const int* columns,
                           global const uchar* selected, global real4* sorted_motion,
                           global real* density, global int* counts, global int* plain_counts,
-                          global uint* lists) {
+                          global uint* lists LIQUIDS) {
   const int slot = get_global_id(0);
   if (slot >= p.count + p.solids) return;
-  const place4 own = sorted_place[slot];
+  place4 own = sorted_place[slot];
   const coord n[3] = {own.x, own.y, own.z};
   real sum = 0;
   int count = 0;
@@ -134,6 +134,9 @@ kernel void find_pressure(const Parameters p, global const int* begins,
     list(&p, lists, slot, &count, j, code);
   })
   counts[slot] = count;
-  set_pressure(&p, slot, own, sum, sorted_motion, density);
+  COPY_PARAMETERS(with, &p);
+  SET_TARGET(with, slot)
+  SCALE_DENSITY(own, sum, slot)
+  set_pressure(with, slot, own, sum, sorted_motion, density);
 }
 #endif

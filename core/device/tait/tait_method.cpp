@@ -220,13 +220,13 @@ std::uint32_t TaitMethod::solve_damping(Real end, Real dt) {
 void TaitMethod::evaluate_liquid(const LiquidParameters& p) {
   DeviceParticles& s = particles_;
   s.sort_after("move", p, now_.motion.position, now_.motion.velocity, now_.acceleration);
-  program_.run_in_lanes("find_pressure", s.count(), p, s.cells.begins, s.sorted_place, s.columns,
-                        s.selected, s.sorted_motion, s.density, s.neighbour_counts, s.plain_counts,
-                        s.neighbours);
+  s.run_over_pairs_in_lanes("find_pressure", p, s.cells.begins, s.sorted_place, s.columns,
+                            s.selected, s.sorted_motion, s.density, s.neighbour_counts,
+                            s.plain_counts, s.neighbours);
   s.find_solid_pressure(p);
-  program_.run_in_lanes("find_acceleration", s.count(), p, s.cells.begins, s.order, s.sorted_place,
-                        s.sorted_motion, s.neighbour_counts, s.plain_counts, s.neighbours,
-                        now_.acceleration);
+  s.run_over_pairs_in_lanes("find_acceleration", p, s.cells.begins, s.order, s.sorted_place,
+                            s.sorted_motion, s.neighbour_counts, s.plain_counts, s.neighbours,
+                            now_.acceleration);
   if (surface_) surface_->add_forces(p, s, now_.acceleration);
   if (cohesion_) cohesion_->add_forces(p, s, now_.acceleration);
   if (transport_) transport_->add_forces(p, s, now_.acceleration);
