@@ -118,8 +118,11 @@ void Missing::check_liquid() {
   reject(!is_incompressible() && !is_verlet && control == StepControl::adaptive,
          "/numerics/control", "must be fixed with an integrator other than velocity_verlet");
   reject(control == StepControl::local, "/numerics/control", "must be fixed or adaptive");
-  reject(control == StepControl::adaptive && solids_move(model_), "/numerics/control",
+  const bool is_adaptive = control == StepControl::adaptive;
+  reject(is_adaptive && solids_move(model_) && !is_incompressible(), "/numerics/control",
          "must be fixed in a scene with bodies that can move");
+  reject(is_adaptive && model_.free_count > model_.liquid_count, "/numerics/control",
+         "must be fixed in a scene with deformable bodies");
   const bool is_explicit =
       solids_move(model_) || (is_incompressible() && control == StepControl::adaptive);
   reject(is_explicit && may_solve_viscosity(model_), "/numerics/step",

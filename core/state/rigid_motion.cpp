@@ -105,4 +105,14 @@ void pose_rigid_body(const Model& model, const RigidModel& rigid, const RigidSta
   }
 }
 
+Real greatest_inverse_mass(const Model& model, Index particle, std::uint64_t step, Real distance) {
+  VAT_CHECK(particle < model.particle_count);
+  if (particle < model.free_count) return model.inverse_mass[particle];
+  const RigidModel& rigid = model.rigid_bodies[model.bodies[model.body[particle]].rigid];
+  if (rigid.is_held(step)) return 0;
+  Real arm2 = model.local_position[particle - model.free_count].squaredNorm();
+  if (distance > 0) arm2 = std::pow(std::sqrt(arm2) + distance, 2);
+  return rigid.inverse_mass + rigid.inverse_moments.maxCoeff() * arm2;
+}
+
 }  // namespace vat

@@ -32,4 +32,10 @@ Quat rotate_freely(const RigidModel& rigid, const Quat& orientation, const Vec3&
 void pose_rigid_body(const Model& model, const RigidModel& rigid, const RigidState& state,
                      Configuration& configuration);
 
+/// Returns the greatest inverse mass that a force on a particle moves in the nominal step `step`:
+/// 1/m of a free particle, 1/M + |x|^2 / I of a particle of a rigid body, 0 if the body is held
+/// [1/kg]. The force acts at most `distance` [m] from the centre of the particle.
+Real greatest_inverse_mass(const Model& model, Index particle, std::uint64_t step,
+                           Real distance = 0);
+
 }  // namespace vat

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/device/common/kernel_values.h"
-#include "core/liquid/incompressible/solve_limits.h"
+#include "core/state/rigid_motion.h"
 
 namespace vat {
 namespace {
@@ -44,7 +44,7 @@ void DevicePushes::find_mobilities(const Model& model, std::uint64_t step) {
   std::vector<float> roots(count_);
   for (std::size_t b = 0; b < count_; ++b) {
     const auto particle = static_cast<Index>(model.liquid_count + b);
-    roots[b] = static_cast<float>(std::sqrt(greatest_mobility_of_solid(model, particle, step)));
+    roots[b] = static_cast<float>(std::sqrt(greatest_inverse_mass(model, particle, step)));
   }
   program_.write(roots_, std::span<const float>(roots));
 }

@@ -9,12 +9,11 @@
 #include "core/damping/damping_solve.h"
 #include "core/device/common/device_motion.h"
 #include "core/device/common/verlet_method.h"
-#include "core/device/incompressible/device_pushes.h"
 #include "core/device/incompressible/device_solve.h"
+#include "core/device/incompressible/viscous_liquid.h"
+#include "core/device/incompressible/wet_solids.h"
 #include "core/device/liquid/device_particles.h"
 #include "core/device/liquid/device_step_control.h"
-#include "core/device/solid/device_solids.h"
-#include "core/device/tait/device_viscosity.h"
 #include "core/liquid/incompressible/solve_limits.h"
 #include "core/stepping/control/step_control.h"
 #include "core/support/check.h"
@@ -39,21 +38,13 @@ struct IncompressibleState {
   Buffer pressure;
 };
 
-/// The solve for the viscosity, and the accelerations by it.
-struct ViscousLiquid {
-  ViscousLiquid(Program& program, const Model& model)
-      : solve(program, model), acceleration(program, model.liquid_count * sizeof(Float4)) {}
-  static std::size_t bytes_for(const Model& model) {
-    return DeviceViscosity::bytes_for(model) + model.liquid_count * sizeof(Float4);
-  }
-
-  DeviceViscosity solve;
-  Buffer acceleration;
-};
-
-/// Returns whether a step is too long for explicit viscosity.
+/// Returns whether a step can be too long for explicit viscosity.
 bool needs_viscosity_solve(const Model& model) {
-  return must_solve_own_damping(model, model.scene.numerics.step);
+  return !solids_move(model) && must_solve_own_damping(model, model.scene.numerics.step);
+}
+
+bool is_adaptive(const Model& model) {
+  return model.scene.numerics.control == StepControl::adaptive;
 }
 
 /// Steps of symplectic Euler, as Stepper::take_step(). Cells, neighbours and densities are those
@@ -66,15 +57,12 @@ class IncompressibleMethod : public DeviceMethod {
         model_(std::move(model)),
         geometry_(geometry),
         parameters_(solve_parameters(*model_)),
-        solids_(make_moving_solids(program, *model_)),
-        particles_(program, *model_, geometry, moving_particles(solids_.get())),
+        wet_(solids_move(*model_) ? std::make_unique<WetSolids>(program, *model_) : nullptr),
+        particles_(program, *model_, geometry, moving_particles(wet_ ? &wet_->solids : nullptr)),
         solve_(program, *model_),
         now_(program, model_->liquid_count),
         start_(program, model_->liquid_count) {
-    if (model_->scene.numerics.control == StepControl::adaptive) {
-      control_.emplace(program, *model_, solve_.partial);
-    }
-    if (solids_) pushes_.emplace(program, *model_, *solids_);
+    if (is_adaptive(*model_)) control_.emplace(program, *model_, solve_.partial);
     if (needs_viscosity_solve(*model_)) viscous_.emplace(program, *model_);
   }
 
@@ -86,8 +74,6 @@ class IncompressibleMethod : public DeviceMethod {
   /// Saves the present state, or returns to the saved one.
   void save();
   void restore();
-  /// Finds which bodies are held in `step`, if solids move.
-  void release(std::uint64_t step);
   void copy(const IncompressibleState& from, IncompressibleState& to);
   /// Enters the particles into their cells by the kernel `name`, and finds their neighbours and
   /// densities.
@@ -98,7 +84,6 @@ class IncompressibleMethod : public DeviceMethod {
   void find_acceleration(const LiquidParameters& p, const Buffer& acceleration);
   /// Finds the densities and the forces on solids at the start of a step. Kicks the solids.
   void begin_step_of_solids(const StepPart& step);
-  DevicePushes* pushes() { return pushes_ ? &*pushes_ : nullptr; }
   /// Returns whether the state after the step is valid.
   bool take_step(const StepPart& step, AdvanceReport& report);
   void project_velocities(const StepPart& step, AdvanceReport& report);
@@ -115,15 +100,13 @@ class IncompressibleMethod : public DeviceMethod {
   const std::shared_ptr<const Model> model_;
   const LiquidGeometry geometry_;
   const SolveParameters parameters_;
-  const std::unique_ptr<DeviceSolids> solids_;  ///< null if all solids are at rest
+  const std::unique_ptr<WetSolids> wet_;  ///< null if all solids are at rest
   DeviceParticles particles_;
   DeviceSolve solve_;
   IncompressibleState now_;
   IncompressibleState start_;                 ///< state before a call, for a failed step
   std::optional<DeviceStepControl> control_;  ///< only with adaptive steps
-  StepHistory history_;
-  StepHistory saved_history_;
-  std::optional<DevicePushes> pushes_;    ///< only if solids move
+  StepHistory history_, saved_history_;
   std::optional<ViscousLiquid> viscous_;  ///< only if steps do not resolve the viscosity
   VolumeReport report_, saved_report_;    ///< of the last step
   int shift_iterations_ = 0;              ///< of the last solve for positions
@@ -138,9 +121,7 @@ void IncompressibleMethod::upload(const State& state) {
   program_.write(now_.pressure, std::span<const Real>(state.now.pressure));
   report_ = state.volume;
   history_ = state.history;
-  if (!solids_) return;
-  solids_->write(state);
-  pushes_->find_mobilities(*model_, state.step_count);
+  if (wet_) wet_->write(state);
 }
 
 void IncompressibleMethod::read(State& state) {
@@ -148,34 +129,28 @@ void IncompressibleMethod::read(State& state) {
   pressures_.resize(n);
   read_.read(program_, now_.motion, n);
   program_.read(now_.pressure, std::span(pressures_));
-  if (solids_) solids_->read();
+  if (wet_) wet_->solids.read();
   read_.copy_to(state.now);
   state.now.pressure.swap(pressures_);
   state.volume = report_;
   state.history = history_;
-  if (!solids_) return;
+  if (!wet_) return;
   state.forces.particle.resize(model_->particle_count);
-  solids_->copy_to(state);
+  wet_->solids.copy_to(state);
 }
 
 void IncompressibleMethod::save() {
   copy(now_, start_);
   saved_report_ = report_;
   saved_history_ = history_;
-  if (solids_) solids_->save();
+  if (wet_) wet_->solids.save();
 }
 
 void IncompressibleMethod::restore() {
   copy(start_, now_);
   report_ = saved_report_;
   history_ = saved_history_;
-  if (solids_) solids_->restore();
-}
-
-void IncompressibleMethod::release(std::uint64_t step) {
-  if (!solids_) return;
-  solids_->release(step);
-  pushes_->find_mobilities(*model_, step);
+  if (wet_) wet_->solids.restore();
 }
 
 void IncompressibleMethod::copy(const IncompressibleState& from, IncompressibleState& to) {
@@ -218,39 +193,32 @@ void IncompressibleMethod::kick(const LiquidParameters& p, const SolveParameters
                           s.neighbours, now_.motion.velocity, solve_.solve_motion);
     return;
   }
-  program_.run_in_lanes("find_acceleration", s.count(), p, s.cells.begins, s.order, s.sorted_place,
-                        s.sorted_motion, s.neighbour_counts, s.plain_counts, s.neighbours,
-                        viscous_->acceleration);
   report.iterations.damping +=
-      viscous_->solve.solve(p, s, now_.motion.velocity, solve.dt, viscous_->acceleration);
-  program_.run("kick_by_accelerations", s.count(), p, solve, s.order, s.sorted_place,
-               viscous_->acceleration, now_.motion.velocity, solve_.solve_motion);
+      viscous_->kick(p, solve, s, now_.motion.velocity, solve_.solve_motion);
 }
 
 void IncompressibleMethod::begin_step_of_solids(const StepPart& step) {
-  solids_->move({step.start, 0, 0, 0, 0}, step.start, step.length, particles_.counters.buffer);
+  const LiquidParameters p = geometry_.at(*model_, {step.start, 0, 0, 0, 0});
+  wet_->solids.move({step.start, 0, 0, 0, 0}, step.start, step.length, particles_.counters.buffer);
   // Walls have moved solids since the last densities, and their velocities have changed.
   find_density_at(step.start);
-  const LiquidParameters p = geometry_.at(*model_, {step.start, 0, 0, 0, 0});
   particles_.find_solid_pressure(p);
-  solids_->find_forces(step.start);
-  particles_.add_forces_on_solids(p, solids_->force());
-  solids_->gather();
-  solids_->kick_euler_step(step.length);
+  wet_->find_forces(step.start, p, particles_);
+  wet_->solids.kick_euler_step(step.length);
 }
 
 void IncompressibleMethod::project_velocities(const StepPart& step, AdvanceReport& report) {
   const LiquidParameters p = geometry_.at(*model_, {step.start, 0, 0, 0, 0});
   DeviceParticles& s = particles_;
   const std::size_t n = s.count();
-  if (solids_) {
+  if (wet_) {
     begin_step_of_solids(step);
   } else {
     s.find_solid_pressure(p);
   }
   SolveParameters solve = parameters_;
   solve.dt = step.length;
-  solve.solids_move = solids_ ? 1 : 0;
+  solve.solids_move = wet_ ? 1 : 0;
   const Vec3 wall_velocity = mean_wall_velocity(*model_, step.start, step.length);
   for (int k = 0; k < 3; ++k) {
     solve.wall_velocity[k] = wall_velocity[k];
@@ -258,15 +226,16 @@ void IncompressibleMethod::project_velocities(const StepPart& step, AdvanceRepor
   }
   set_limits(velocity_limits(model_->scene.incompressible), solve);
   kick(p, solve, report);
-  if (solids_) pushes_->see_solids(p, solve, s, solve_.solve_motion, solve_.squares);
+  if (wet_) wet_->pushes.see_solids(p, solve, s, solve_.solve_motion, solve_.squares);
   program_.run_in_lanes("begin_projection", n, p, solve, s.cells.begins, s.order, s.sorted_place,
                         s.neighbour_counts, s.plain_counts, s.neighbours, solve_.solve_motion,
                         s.density, solve_.squares, now_.pressure, solve_.x, solve_.excess,
                         solve_.gradient, solve_.whole, solve_.partial);
-  report_.velocities = solve_.solve(p, solve, s, pushes(), report_.velocities.iterations);
+  report_.velocities =
+      solve_.solve(p, solve, s, wet_ ? &wet_->pushes : nullptr, report_.velocities.iterations);
   program_.run("end_projection", n, solve, solve_.progress, s.order, particles_.density, solve_.x,
                solve_.whole, now_.pressure, now_.motion.velocity);
-  if (solids_) pushes_->kick(solve, solve_.progress);
+  if (wet_) wet_->pushes.kick(solve, solve_.progress);
 }
 
 void IncompressibleMethod::correct_density(LiquidParameters p) {
@@ -283,8 +252,8 @@ void IncompressibleMethod::correct_density(LiquidParameters p) {
     SolveParameters solve = parameters_;
     solve.dt = 1;  // shifts take no time
     set_limits(place_limits(wanted, report.mean <= wanted.density_tolerance), solve);
-    if (solids_) {
-      pushes_->see_solids(p, solve, particles_, solve_.solve_motion, solve_.squares);
+    if (wet_) {
+      wet_->pushes.see_solids(p, solve, particles_, solve_.solve_motion, solve_.squares);
     }
     program_.run("begin_shift", n, solve, particles_.sorted_place, particles_.density,
                  solve_.squares, solve_.x, solve_.excess, solve_.gradient, solve_.whole,
@@ -298,13 +267,13 @@ void IncompressibleMethod::correct_density(LiquidParameters p) {
 bool IncompressibleMethod::take_step(const StepPart& step, AdvanceReport& report) {
   const Buffer& counters = particles_.counters.buffer;
   project_velocities(step, report);
-  if (solids_) solids_->drift_euler_step(step.start, step.end, step.length, counters);
+  if (wet_) wet_->solids.drift_euler_step(step.start, step.end, step.length, counters);
   LiquidParameters p = geometry_.at(*model_, {step.end, 0, 0, step.length, 0});
   p.greatest_speed2 = geometry_.greatest_speed2(step.length);
   correct_density(p);
   program_.run("check", model_->liquid_count, p, now_.motion.position, now_.motion.velocity,
                counters);
-  if (solids_) solids_->end_euler_step(step.end, step.length, counters);
+  if (wet_) wet_->solids.end_euler_step(step.end, step.length, counters);
   report.iterations.velocities += static_cast<std::uint64_t>(report_.velocities.iterations);
   report.iterations.places += static_cast<std::uint64_t>(report_.places.iterations);
   report.count_evaluation(model_->particle_count);
@@ -318,21 +287,37 @@ Real IncompressibleMethod::probe_start(Real start, Real dt) {
   remove_walls(moved);
   const Buffer& before = solve_.whole;
   const Buffer& after = solve_.solve_motion;
+  if (wet_) find_density_at(start);
   find_acceleration(p, before);
+  if (wet_) {
+    wet_->find_forces(start, p, particles_);
+    wet_->solids.probe(start, dt, particles_.counters.buffer);
+  }
   find_density_after("move", moved, now_.motion.position, now_.motion.velocity, before);
   find_acceleration(moved, after);
   const Real rate = control_->observed_rate(
       *model_, {start_.motion.position, now_.motion.position, before, after, particles_.weight()});
   copy(start_, now_);
   particles_.counters.clear();
-  find_density_at(start);
+  if (wet_) {
+    wet_->solids.restore();
+  } else {
+    find_density_at(start);
+  }
   return rate;
 }
 
 Real IncompressibleMethod::find_allowed_step(Real start, AdvanceReport& report) {
-  const Real step = control_->least_step(*model_, now_.motion.velocity, now_.pressure);
-  if (history_.step == 0) {
-    const Real nominal = model_->scene.numerics.step;
+  const Real nominal = model_->scene.numerics.step;
+  const Real last = history_.step;
+  Real step = control_->least_step(*model_, now_.motion.velocity, now_.pressure);
+  if (wet_) {
+    wet_->solids.place(start, particles_.counters.buffer);
+    const Real longest = last > 0 ? std::min(nominal, 2 * last) : nominal;
+    step = std::min(step,
+                    wet_->limits->least_step(*model_, start, longest, control_->greatest_speed()));
+  }
+  if (last == 0) {
     history_.observed_rate = probe_start(start, kProbeShare * std::min(step, nominal));
     report.count_evaluation(model_->particle_count);
     report.count_evaluation(model_->particle_count);
@@ -358,13 +343,14 @@ bool IncompressibleMethod::take_steps(const EngineInput& input, std::uint32_t st
   particles_.counters.clear();
   if (!input.continues) {
     upload(state);
-    if (!solids_) find_density_at(time(0));
+    if (!wet_) find_density_at(time(0));
   }
   save();
   AdvanceReport report = input.report;
   bool is_sound = true;
   for (std::uint32_t s = 0; s < steps && is_sound; ++s) {
-    if (releases_body(*model_, state.step_count + s)) release(state.step_count + s);
+    const std::uint64_t step = state.step_count + s;
+    if (wet_ && releases_body(*model_, step)) wet_->release(step);
     is_sound = take_nominal_step({time(s), time(s + 1), dt}, report);
     now_.motion.wrap_liquid(*model_);
   }
@@ -372,7 +358,7 @@ bool IncompressibleMethod::take_steps(const EngineInput& input, std::uint32_t st
     restore();
     return false;
   }
-  if (solids_) solids_->count_work(report);
+  if (wet_) wet_->solids.count_work(report);
   report.wall_stops += static_cast<std::uint64_t>(particles_.counters.read().stops);
   input.report = std::move(report);
   return true;
@@ -386,7 +372,7 @@ std::size_t bytes_for_incompressible(const Model& model) {
   return DeviceParticles::bytes_for(model, geometry, moves) + DeviceSolve::bytes_for(model) +
          DeviceStepControl::bytes_for(model) +
          2 * model.liquid_count * IncompressibleState::kBytes +
-         (moves ? DeviceSolids::bytes_for(model) + DevicePushes::bytes_for(model) : 0) +
+         (moves ? WetSolids::bytes_for(model) : 0) +
          (needs_viscosity_solve(model) ? ViscousLiquid::bytes_for(model) : 0);
 }
 

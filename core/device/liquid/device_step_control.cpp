@@ -92,7 +92,8 @@ Real DeviceStepControl::least_step(const Model& model, const Buffer& velocity,
     select_pressure(body, result++, pressure);
   }
   const std::vector<Double4> results = read_results();
-  Real step = step_of_particles(own_step_, travel_, std::sqrt(results.back().x));
+  greatest_speed_ = std::sqrt(results.back().x);
+  Real step = step_of_particles(own_step_, travel_, greatest_speed_);
   for (std::size_t k = 0; k < bodies_.size(); ++k) {
     const LiquidMotion motion{std::sqrt(results[k].x), 0, results[k].y};
     step = std::min(step, step_of_liquid(model, bodies_[k], motion));

@@ -58,6 +58,8 @@ class DeviceStepControl {
   /// Returns the step that PresentSteps::least() would give for an incompressible liquid.
   Real least_step(const Model& model, const opencl::Buffer& velocity,
                   const opencl::Buffer& pressure);
+  /// Returns the greatest speed that the last call of least_step() has found [m/s].
+  Real greatest_speed() const { return greatest_speed_; }
   /// Returns the same step for a weakly compressible liquid. Unknown accelerations are 0.
   Real least_step_by_forces(const Model& model, const opencl::Buffer& velocity,
                             const opencl::Buffer& acceleration);
@@ -74,6 +76,7 @@ class DeviceStepControl {
   const Real travel_;                ///< see GuardBounds [m]
   const Real own_step_;              ///< least of StepBounds [s]
   std::vector<std::size_t> bodies_;  ///< indices of the liquid bodies
+  Real greatest_speed_ = 0;          ///< [m/s]
   opencl::Buffer motion_, results_, histogram_;
 };
 

@@ -37,7 +37,7 @@ DeviceRigidBodies::Constants DeviceRigidBodies::constants_of(const Model& model,
   c.mass = rigid.mass;
   c.inverse_mass = rigid.inverse_mass;
   c.extent = bounds.extent[b];
-  c.greatest_speed = std::min(kMaxSpeed, bounds.travel[rigid.body] / model.scene.numerics.step);
+  c.travel = bounds.travel[rigid.body];
   c.greatest_inverse_moment = rigid.inverse_moments.maxCoeff();
   store(rigid.inertia, c.inertia);
   store(rigid.inverse_inertia, c.inverse_inertia);
@@ -178,6 +178,15 @@ void DeviceRigidBodies::begin_drive(const Model& model, Real start, Real step) {
     const Vec3 way =
         slide_motion(*motion, start + step).offset - slide_motion(*motion, start).offset;
     drive_body(b, Vec3::Zero(), way / step);
+  }
+}
+
+void DeviceRigidBodies::drift_driven(const Model& model, Real start, Real dt) {
+  for (std::size_t b = 0; b < count_; ++b) {
+    const std::optional<SlideMotion>& motion = model.rigid_bodies[b].motion;
+    if (!motion) continue;
+    const Vec3 velocity = slide_motion(*motion, start).velocity;
+    drive_body(b, dt * velocity, velocity);
   }
 }
 

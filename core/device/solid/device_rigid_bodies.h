@@ -42,6 +42,8 @@ class DeviceRigidBodies {
   void drive(const Model& model, Real start, Real end);
   /// Gives the driven bodies their mean velocities in a step of `step` from `start` [s].
   void begin_drive(const Model& model, Real start, Real step);
+  /// Moves the driven bodies for `dt` [s] with their velocities at `start` [s].
+  void drift_driven(const Model& model, Real start, Real dt);
   /// Kicks the bodies by the forces over `dt` [s].
   void kick(Real dt);
   /// Checks the state at the end of a step.
@@ -69,7 +71,7 @@ class DeviceRigidBodies {
     double mass;
     double inverse_mass;
     double extent;
-    double greatest_speed;
+    double travel;
     double greatest_inverse_moment;
     double inertia[9];
     double inverse_inertia[9];

@@ -34,11 +34,6 @@ std::size_t groups_of_solids(const Model& model) {
 
 }  // namespace
 
-std::unique_ptr<DeviceSolids> make_moving_solids(Program& program, const Model& model) {
-  if (!solids_move(model)) return nullptr;
-  return std::make_unique<DeviceSolids>(program, model, guard_bounds(model));
-}
-
 std::optional<MovingSolids> moving_particles(const DeviceSolids* solids) {
   if (solids == nullptr) return {};
   return MovingSolids{solids->position(), solids->velocity_in_forces()};
@@ -148,6 +143,25 @@ void DeviceSolids::restore() {
   bound_ = saved_bound_;
 }
 
+void DeviceSolids::enter(const SolidParameters& before, const SolidParameters& after,
+                         const opencl::Buffer& counters) {
+  const SolidTables& t = tables_;
+  rigid_.pose(after, motion_.position, predicted_, counters);
+  cells_.clear();
+  program_.run("move_solids", range_.count, before, motion_.position, motion_.velocity, predicted_,
+               force_, t.mobility, t.body_of, t.bodies, cells_.cell_of, cells_.rank, cells_.counts,
+               counters);
+  cells_.sort();
+  program_.run("collect_solids", range_.count, after, cells_.cell_of, cells_.begins,
+               cells_.unsorted, motion_.position, t.body_of, order_, sorted_position_);
+}
+
+void DeviceSolids::place(Real time, const opencl::Buffer& counters) {
+  const SolidParameters p = parameters(time);
+  rigid_.move(p, p.step, counters);
+  enter(p, p, counters);
+}
+
 void DeviceSolids::move(const StepMoment& start, Real end, Real step,
                         const opencl::Buffer& counters) {
   const SolidTables& t = tables_;
@@ -157,15 +171,8 @@ void DeviceSolids::move(const StepMoment& start, Real end, Real step,
   rigid_.move(before, step, counters);
   start.drift > 0 ? rigid_.drive(model_, start.time, end)
                   : rigid_.begin_drive(model_, start.time, step);
-  rigid_.pose(after, motion_.position, predicted_, counters);
   if (has_divided_kicks()) before.closing = before.opening = 0;
-  cells_.clear();
-  program_.run("move_solids", range_.count, before, motion_.position, motion_.velocity, predicted_,
-               force_, t.mobility, t.body_of, t.bodies, cells_.cell_of, cells_.rank, cells_.counts,
-               counters);
-  cells_.sort();
-  program_.run("collect_solids", range_.count, after, cells_.cell_of, cells_.begins,
-               cells_.unsorted, motion_.position, t.body_of, order_, sorted_position_);
+  enter(before, after, counters);
   if (start.drift > 0) change_springs();
   if (model_.cells.empty()) return;
   program_.run(
@@ -225,8 +232,19 @@ void DeviceSolids::drift_euler_step(Real start, Real end, Real dt, const opencl:
   rigid_.pose(at_end, motion_.position, predicted_, counters);
 }
 
+void DeviceSolids::probe(Real start, Real dt, const opencl::Buffer& counters) {
+  VAT_CHECK(range_.free == 0);
+  const StepMoment moment{start, 0, dt / 2, dt, 0};
+  rigid_.move(geometry_.at(model_, moment), dt, counters);
+  rigid_.drift_driven(model_, start, dt);
+  SolidParameters anywhere = parameters(start + dt);
+  anywhere.walls = 0;
+  rigid_.pose(anywhere, motion_.position, predicted_, counters);
+}
+
 void DeviceSolids::end_euler_step(Real end, Real dt, const opencl::Buffer& counters) {
-  const SolidParameters p = parameters(end);
+  SolidParameters p = parameters(end);
+  p.step = dt;
   change_springs();
   if (projection_) {
     projection_->finish(model_, p, end, dt, projected(), counters);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -30,9 +29,7 @@ namespace vat {
 
 class DeviceSolids;
 
-/// Returns the bodies of a scene with a coupled liquid, or null if all solids are at rest.
-std::unique_ptr<DeviceSolids> make_moving_solids(opencl::Program& program, const Model& model);
-/// Returns the particles of these bodies, if any.
+/// Returns the particles of bodies in a liquid, if any.
 std::optional<MovingSolids> moving_particles(const DeviceSolids* solids);
 
 /// The bodies of a model on a device, see SolidRange: their state, and the parts of a step. A step
@@ -62,6 +59,12 @@ class DeviceSolids {
   /// Ends a step, and begins the next one with a kick and a drift from start.time to `end` [s].
   /// Without a drift, sets the velocities of the first evaluation of a step of `step` [s].
   void move(const StepMoment& start, Real end, Real step, const opencl::Buffer& counters);
+  /// Finds the particles and cells of the present positions at `time` [s], with the present
+  /// velocities.
+  void place(Real time, const opencl::Buffer& counters);
+  /// Kicks rigid bodies for dt / 2 [s] and drifts them for `dt` from `start` [s], as
+  /// Stepper::probe_start(). Requires that no solid particle is free.
+  void probe(Real start, Real dt, const opencl::Buffer& counters);
   /// Computes the forces at the time `end` [s] after move(), without those of a liquid.
   void find_forces(Real end);
   /// Sums the forces on rigid bodies, and finds the bound of oscillations.
@@ -138,6 +141,10 @@ class DeviceSolids {
 
  private:
   void find_bound();
+  /// Poses rigid bodies at the time of `after`, moves free particles by `before`, and finds the
+  /// cells.
+  void enter(const SolidParameters& before, const SolidParameters& after,
+             const opencl::Buffer& counters);
   /// Returns whether there is work between the kicks of two steps, or between a kick and a drift.
   bool has_divided_kicks() const {
     return implicit_springs_.has_value() || elongation_.has_value() || projection_.has_value();

@@ -14,7 +14,7 @@ kernel void take_euler_step(const Solids p, const double by, const double dt, gl
     v[k] = velocity[3 * i + k] + (by * mobility[i]) * force[3 * i + k];
     x[k] = position[3 * i + k] + dt * v[k];
   }
-  check_solid(&p, mobility[i], bodies[body_of[i]].greatest_speed2, x, v, status);
+  check_solid(&p, mobility[i], greatest_speed2_of(&p, bodies + body_of[i]), x, v, status);
   for (int k = 0; k < 3; ++k) {
     position[3 * i + k] = x[k];
     velocity[3 * i + k] = v[k];
@@ -69,7 +69,7 @@ kernel void end_stages(const Solids p, const double dt, global double* position,
     x[k] = start_position[3 * i + k] + dt * sum_of_velocity[3 * i + k];
     v[k] = start_velocity[3 * i + k] + dt * sum_of_acceleration[3 * i + k];
   }
-  check_solid(&p, mobility[i], bodies[body_of[i]].greatest_speed2, x, v, status);
+  check_solid(&p, mobility[i], greatest_speed2_of(&p, bodies + body_of[i]), x, v, status);
   for (int k = 0; k < 3; ++k) {
     position[3 * i + k] = x[k];
     velocity[3 * i + k] = v[k];

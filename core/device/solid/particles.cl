@@ -24,6 +24,8 @@ typedef struct {
   double prediction;
   double prediction_of_liquids;
   double reach;
+  double step;
+  double max_speed;
   int cells[3];
   int walls;
   int walls_push;
@@ -38,7 +40,7 @@ typedef struct {
 } Solids;
 
 typedef struct {
-  double greatest_speed2;
+  double travel;
   double omega2;
   double rate;
   int material;
@@ -141,6 +143,12 @@ bool stop_at_walls(const Solids* p, double* x, double* v) {
   return is_stopped;
 }
 
+// The square of the greatest valid speed in a step of p.step, see GuardBounds::travel.
+double greatest_speed2_of(const Solids* p, global const Body* body) {
+  const double speed = fmin(p->max_speed, body->travel / p->step);
+  return speed * speed;
+}
+
 // Stops a particle at walls at the end of a step, and checks its state.
 void check_solid(const Solids* p, double mobility, double greatest_speed2, double* x, double* v,
                  global int* status) {
@@ -177,7 +185,7 @@ kernel void move_solids(const Solids p, global double* position, global double* 
   double v[3];
   if (i < p.free) {
     const double mine = mobility[i];
-    end_solid_step(&p, i, position, velocity, force, mine, bodies[body_of[i]].greatest_speed2, x,
+    end_solid_step(&p, i, position, velocity, force, mine, greatest_speed2_of(&p, bodies + body_of[i]), x,
                    v, status);
     const double prediction = i < p.liquids ? p.prediction_of_liquids : p.prediction;
     for (int k = 0; k < 3; ++k) {
@@ -213,7 +221,7 @@ kernel void check_solids(const Solids p, global double* position, global double*
     x[k] = position[3 * i + k];
     v[k] = velocity[3 * i + k];
   }
-  check_solid(&p, mobility[i], bodies[body_of[i]].greatest_speed2, x, v, status);
+  check_solid(&p, mobility[i], greatest_speed2_of(&p, bodies + body_of[i]), x, v, status);
   for (int k = 0; k < 3; ++k) {
     position[3 * i + k] = x[k];
     velocity[3 * i + k] = v[k];
@@ -229,7 +237,7 @@ kernel void finish_solids(const Solids p, global double* position, global double
   if (i >= p.free) return;
   double x[3];
   double v[3];
-  end_solid_step(&p, i, position, velocity, force, mobility[i], bodies[body_of[i]].greatest_speed2,
+  end_solid_step(&p, i, position, velocity, force, mobility[i], greatest_speed2_of(&p, bodies + body_of[i]),
                  x, v, status);
   for (int k = 0; k < 3; ++k) {
     position[3 * i + k] = x[k];

@@ -6,7 +6,7 @@ typedef struct {
   double mass;
   double inverse_mass;
   double extent;
-  double greatest_speed;
+  double travel;
   double greatest_inverse_moment;
   double inertia[9];
   double inverse_inertia[9];
@@ -139,7 +139,7 @@ void check_rigid(const Solids* p, const Rigid* body, double dt, const Pose* pose
   const double speed = sqrt(product(velocity, velocity)) + body->extent * spin;
   const double at_rest[3] = {0, 0, 0};
   // In this form, a NaN fails.
-  const bool is_slow = speed <= body->greatest_speed && spin * dt <= 1;
+  const bool is_slow = speed <= fmin(p->max_speed, body->travel / dt) && spin * dt <= 1;
   if (!is_slow || !is_within(p->domain_low, p->domain_high, 0, pose->center, at_rest)) {
     atomic_or(status + kFault, 1);
   }

@@ -7,6 +7,7 @@
 #include "core/device/common/kernel_values.h"
 #include "core/device/common/vat_box.h"
 #include "core/laws/vat_motion.h"
+#include "core/limits.h"
 #include "core/liquid/gas/liquid.h"
 #include "core/model/acting_forces.h"
 #include "core/support/check.h"
@@ -59,6 +60,8 @@ SolidGeometry::SolidGeometry(const Model& model, const GuardBounds& bounds) {
   store(bounds.min, constant_.domain_low);
   store(bounds.max, constant_.domain_high);
   constant_.reach = has_contact_forces(model) ? model.contact_reach : 0;
+  constant_.step = scene.numerics.step;
+  constant_.max_speed = kMaxSpeed;
   for (int axis = 0; axis < 3; ++axis) {
     constant_.wall_low[axis] = -std::numeric_limits<double>::infinity();
     constant_.wall_high[axis] = std::numeric_limits<double>::infinity();

@@ -31,7 +31,9 @@ struct SolidParameters {
   double drift;       ///< [s]
   double prediction;  ///< duration of the kick of velocities in forces [s]
   double prediction_of_liquids;
-  double reach;  ///< Model::contact_reach; 0: no contacts [m]
+  double reach;      ///< Model::contact_reach; 0: no contacts [m]
+  double step;       ///< duration of a step for the guard [s]
+  double max_speed;  ///< kMaxSpeed
   std::int32_t cells[3];
   std::int32_t walls;       ///< bit w: wall w exists
   std::int32_t walls_push;  ///< 1: walls exert forces

@@ -16,7 +16,7 @@ using opencl::Program;
 
 // Structs of particles.cl and forces.cl.
 struct SolidBody {
-  double greatest_speed2;
+  double travel;
   double omega2;
   double rate;
   std::int32_t material;
@@ -34,12 +34,11 @@ std::vector<SolidBody> bodies_of(const Model& model, const GuardBounds& bounds) 
   std::vector<SolidBody> bodies;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const ModelBody& body = model.bodies[b];
-    const Real speed = std::min(kMaxSpeed, bounds.travel[b] / model.scene.numerics.step);
     const Oscillation& own = model.damping.own[b];
     const bool touches_itself =
         body.kind == BodyKind::deformable && model.self_contacts[body.material].has_value();
-    bodies.push_back({speed * speed, own.omega2, own.rate, static_cast<std::int32_t>(body.material),
-                      touches_itself ? 1 : 0});
+    bodies.push_back({bounds.travel[b], own.omega2, own.rate,
+                      static_cast<std::int32_t>(body.material), touches_itself ? 1 : 0});
   }
   return bodies;
 }

@@ -74,6 +74,11 @@ bool keeps_forces(const Model& model) {
   return integrator_of(model.scene.numerics.integrator).keeps_forces();
 }
 
+std::unique_ptr<DeviceSolids> make_solids(Program& program, const Model& model) {
+  if (!solids_move(model)) return nullptr;
+  return std::make_unique<DeviceSolids>(program, model, guard_bounds(model));
+}
+
 class TaitMethod : public VerletMethod {
  public:
   TaitMethod(Program& program, std::shared_ptr<const Model> compiled,
@@ -81,7 +86,7 @@ class TaitMethod : public VerletMethod {
       : VerletMethod(std::move(compiled)),
         program_(program),
         geometry_(geometry),
-        solids_(make_moving_solids(program, model())),
+        solids_(make_solids(program, model())),
         particles_(program, model(), geometry, moving_particles(solids_.get())),
         now_(program, model()),
         start_(program, model()) {

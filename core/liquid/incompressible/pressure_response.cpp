@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/liquid/incompressible/solve_limits.h"
 #include "core/liquid/pairs/coupled_pairs.h"
 #include "core/liquid/pairs/liquid_pairs.h"
 #include "core/state/rigid_motion.h"
@@ -318,7 +317,7 @@ void PressureResponse::find_slopes() {
       },
       [&](std::size_t s) {
         const Index particle = model.liquid_count + solids_[s];
-        const Real mobility = greatest_mobility_of_solid(model, particle, f_.step);
+        const Real mobility = greatest_inverse_mass(model, particle, f_.step);
         return PairMotion{0, std::sqrt(mobility), 0, 0};
       },
       [](const PairImage&, const PairMotion& source) { return source; });

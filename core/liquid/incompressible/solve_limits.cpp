@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "core/laws/vat_motion.h"
-#include "core/support/check.h"
 
 namespace vat {
 namespace {
@@ -72,15 +71,6 @@ SolveLimits place_limits(const IncompressibleSolve& wanted, bool mean_is_met) {
 bool is_solved(const IncompressibleSolve& wanted, const SolveReport& places) {
   return places.mean <= wanted.density_tolerance &&
          places.greatest <= kGreatestOverMean * wanted.density_tolerance;
-}
-
-Real greatest_mobility_of_solid(const Model& model, Index particle, std::uint64_t step) {
-  VAT_CHECK(particle >= model.liquid_count && particle < model.particle_count);
-  if (particle < model.free_count) return model.inverse_mass[particle];
-  const RigidModel& rigid = model.rigid_bodies[model.bodies[model.body[particle]].rigid];
-  if (rigid.is_held(step)) return 0;
-  return rigid.inverse_mass + rigid.inverse_moments.maxCoeff() *
-                                  model.local_position[particle - model.free_count].squaredNorm();
 }
 
 Vec3 mean_wall_velocity(const Model& model, Real time, Real dt) {

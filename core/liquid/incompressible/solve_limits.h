@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstdint>
-
 #include "core/diagnostics.h"
 #include "core/liquid/incompressible/complementarity.h"
 #include "core/model/model.h"
@@ -32,10 +30,6 @@ SolveLimits place_limits(const IncompressibleSolve& wanted, bool mean_is_met);
 
 /// Returns whether the mean and the greatest excess density are within their tolerances.
 bool is_solved(const IncompressibleSolve& wanted, const SolveReport& places);
-
-/// Returns an upper bound of the inverse mass that a force on a solid particle moves in the nominal
-/// step `step` [1/kg].
-Real greatest_mobility_of_solid(const Model& model, Index particle, std::uint64_t step);
 
 /// Returns the mean velocity of the walls in a step of `dt` [s] from `time` [s] [m/s].
 Vec3 mean_wall_velocity(const Model& model, Real time, Real dt);

@@ -24,7 +24,6 @@ namespace vat {
 namespace {
 
 constexpr Real kInfinity = std::numeric_limits<Real>::infinity();
-constexpr Real kGreatestTurn = 0.5;  // [rad] in one step; the guard allows 1
 
 /// 2 lambda_max(sum_j k_ij n n^T) / m_i at the start, for one of the constants of the springs.
 template <class Constant>

@@ -24,6 +24,9 @@ struct LiquidStepScratch {
   std::vector<Real> pressures;               ///< the highest ones [Pa]
 };
 
+/// Greatest rotation of a rigid body in one step [rad]. The guard allows 1.
+inline constexpr Real kGreatestTurn = 0.5;
+
 /// The maximum step lengths that a state allows [s]; infinite without a limit.
 struct PresentSteps {
   std::vector<Real> particle;  ///< by free particle; forces of liquids excluded

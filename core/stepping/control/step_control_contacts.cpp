@@ -9,6 +9,7 @@
 #include "core/laws/pair_direction.h"
 #include "core/laws/vat_motion.h"
 #include "core/numerics/error_model.h"
+#include "core/state/rigid_motion.h"
 #include "core/support/check.h"
 
 namespace vat {
@@ -30,22 +31,12 @@ struct ContactBoundSearch {
   const Model& model() const { return force_model.model; }
 };
 
-/// 1/m of a free particle. For a rigid one 1/M + |x|^2 / I, the maximum over all directions.
 void find_inverse_masses(const ContactBoundSearch& search, std::vector<Real>& inverse_mass) {
   const Model& model = search.model();
   inverse_mass.assign(model.inverse_mass.begin(), model.inverse_mass.end());
-  for (std::size_t b = 0; b < model.rigid_bodies.size(); ++b) {
-    const RigidModel& rigid = model.rigid_bodies[b];
-    if (rigid.is_held(search.force_model.step)) {
-      std::fill_n(inverse_mass.begin() + rigid.particles.begin, rigid.particles.size(), 0);
-      continue;
-    }
-    const Real turning = rigid.inverse_moments.maxCoeff();
-    for (Index i = rigid.particles.begin; i < rigid.particles.end; ++i) {
-      Real arm2 = model.local_position[i - model.free_count].squaredNorm();
-      if (model.has_friction) arm2 = std::pow(std::sqrt(arm2) + model.radius[i], 2);
-      inverse_mass[i] = rigid.inverse_mass + turning * arm2;
-    }
+  for (std::size_t i = model.free_count; i < model.particle_count; ++i) {
+    inverse_mass[i] = greatest_inverse_mass(model, static_cast<Index>(i), search.force_model.step,
+                                            model.has_friction ? model.radius[i] : 0);
   }
 }
 
@@ -135,11 +126,15 @@ ContactPrediction look_at_walls(const ContactBoundSearch& search, Real inverse_m
   return sum;
 }
 
-/// Forces with kinks limit all methods to order 2. A contact that begins and ends within steps
-/// changes the separation speed by up to z^2 / 8.
+}  // namespace
+
+// Forces with kinks limit all methods to order 2. A contact that begins and ends within steps
+// changes the separation speed by up to z^2 / 8.
 Real contact_phase(const Numerics& numerics) {
   return std::min(resolving_phase_of_places(numerics), std::sqrt(8 * numerics.tolerance));
 }
+
+namespace {
 
 /// The step for `contacts` only, and with `all` other forces.
 Real allowed_step(const Numerics& numerics, const ContactPrediction& prediction,

@@ -33,6 +33,9 @@ struct ContactPrediction {
 };
 inline constexpr Real kFullAmplitude = 0.01;
 
+/// Returns the phase omega dt of a contact that a step resolves to the tolerance.
+Real contact_phase(const Numerics& numerics);
+
 /// Buffers of find_contact_steps().
 struct ContactScratch {
   std::vector<ContactPrediction> prediction;  ///< by rigid particle

@@ -231,7 +231,11 @@ TEST(IncompressibleSolidsDevice, RefusesFeaturesThatItLacks) {
          s.default_interface.law = InterfaceLaw::projection;
        }},
       {"/numerics/step", [](Scene& s) { s.materials[0].liquid->viscosity = 200; }},
-      {"/numerics/control", [](Scene& s) { s.numerics.control = StepControl::adaptive; }},
+      {"/numerics/control",
+       [](Scene& s) {
+         add_wet_jelly(s);
+         s.numerics.control = StepControl::adaptive;
+       }},
   };
   expect_refusals(make_incompressible_pool(), cases);
 }

@@ -135,5 +135,14 @@ TEST(LanesOfDevices, DoNotChangeTheBitsOfBodiesInIncompressibleLiquids) {
   }
 }
 
+TEST(LanesOfDevices, DoNotChangeTheBitsOfAdaptiveStepsOfBodies) {
+  Scene scene = make_column(PressureSolver::incompressible);
+  add_bodies(scene);
+  scene.bodies.pop_back();
+  scene.bodies[1].position = {-0.03, 0, 0};
+  scene.numerics.control = StepControl::adaptive;
+  EXPECT_EQ(hash_with_lanes(scene, opencl::kMostLanes), hash_with_lanes(scene, 1));
+}
+
 }  // namespace
 }  // namespace vat::device_lanes_test
