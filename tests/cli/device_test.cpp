@@ -139,9 +139,9 @@ TEST(DeviceCommand, BenchMeasuresADeviceBesideTheCpu) {
   EXPECT_EQ(table.text(1, "instruction set"), "opencl:0");
   EXPECT_EQ(table.number(0, "steps"), table.number(1, "steps"));
   EXPECT_NE(table.text(0, "state hash"), table.text(1, "state hash"));
-  const std::string wheel = VAT_SOURCE_DIR "/protocol/scenes/paddle-wheel.json";
-  EXPECT_THAT(run_bench({"speed", "--quick", "--device", "opencl", wheel}),
-              exits(1, HasSubstr("/bodies/2/axle: must be absent")));
+  const std::string clay = VAT_SOURCE_DIR "/protocol/scenes/clay.json";
+  EXPECT_THAT(run_bench({"speed", "--quick", "--device", "opencl", clay}),
+              exits(1, HasSubstr("/sleeping: must be absent")));
 }
 
 TEST(DeviceCommand, RecordsOnADevice) {

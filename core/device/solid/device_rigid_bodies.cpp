@@ -1,6 +1,7 @@
 #include "core/device/solid/device_rigid_bodies.h"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "core/device/common/kernel_values.h"
@@ -43,6 +44,14 @@ DeviceRigidBodies::Constants DeviceRigidBodies::constants_of(const Model& model,
   store(rigid.inverse_inertia, c.inverse_inertia);
   store(rigid.principal_axes, c.principal_axes);
   store(rigid.inverse_moments, c.inverse_moments);
+  if (rigid.axle) {
+    const auto& [direction, damping] = *rigid.axle;
+    store(direction, c.axle);
+    // The axle is at rest in the body, so that the moment about it is constant.
+    const Real step = model.scene.numerics.step;
+    c.brake = std::exp(-damping * rigid.inverse_moments.maxCoeff() * step);
+    c.has_axle = 1;
+  }
   std::ranges::copy(rigid.splitting, c.splitting);
   c.begin = static_cast<std::int32_t>(rigid.particles.begin - SolidRange(model).first);
   c.end = static_cast<std::int32_t>(rigid.particles.end - SolidRange(model).first);

@@ -77,12 +77,14 @@ class DeviceRigidBodies {
     double inverse_inertia[9];
     double principal_axes[4];
     double inverse_moments[3];
+    double axle[3];
+    double brake;  ///< angular momentum after / before the brake of an axle in a nominal step
     std::int32_t splitting[3];
     std::int32_t begin;
     std::int32_t end;
     std::int32_t body;
     std::int32_t is_held;
-    std::int32_t padding;
+    std::int32_t has_axle;
   };
   /// The struct Pose of rigid.cl.
   struct Pose {

@@ -12,12 +12,14 @@ typedef struct {
   double inverse_inertia[9];
   double principal_axes[4];
   double inverse_moments[3];
+  double axle[3];
+  double brake;
   int splitting[3];
   int begin;
   int end;
   int body;
   int is_held;
-  int padding;
+  int has_axle;
 } Rigid;
 
 typedef struct {
@@ -150,6 +152,7 @@ void end_rigid_step(const Solids* p, const Rigid* body, global const double* for
                     double dt, Pose* pose, global int* status) {
   if (!(p->closing > 0)) return;
   kick_rigid(pose, force, b, p->closing);
+  for (int k = 0; k < 3 && body->has_axle; ++k) pose->angular_momentum[k] *= body->brake;
   check_rigid(p, body, dt, pose, status);
 }
 
@@ -234,7 +237,7 @@ kernel void pose_rigid_particles(const Solids p, global const Rigid* rigid,
   for (int wall = 0; wall < 6; ++wall) {
     const bool is_beyond =
         ((p.walls >> wall) & 1) && distance_from_wall(&p, wall, x[wall / 2]) < 0;
-    if (is_beyond && !rigid[b].is_held) atomic_or(status + kFault, 1);
+    if (is_beyond && !rigid[b].is_held && !rigid[b].has_axle) atomic_or(status + kFault, 1);
   }
 }
 
@@ -274,6 +277,16 @@ Resultant resultant_of(local double4* sums, const Rigid* body, double3 center,
   return total;
 }
 
+// The parts of a force and a torque that a body feels, see apply_axle().
+double3 felt_force(const Rigid* body, double3 force) {
+  return body->is_held || body->has_axle ? (double3)(0) : force;
+}
+double3 felt_torque(const Rigid* body, double3 torque) {
+  if (body->is_held) return 0;
+  const double3 axle = three(body->axle);
+  return body->has_axle ? product(axle, torque) * axle : torque;
+}
+
 // Sums the forces on the particles of each body, see gather_rigid_forces(). `bounds` receives the
 // bound of the oscillations of the body in its contacts, see find_bound(). One group for each body.
 kernel __attribute__((reqd_work_group_size(ITEMS, 1, 1))) void gather_rigid_forces(
@@ -304,7 +317,7 @@ kernel __attribute__((reqd_work_group_size(ITEMS, 1, 1))) void gather_rigid_forc
   }
   COMBINE_SOME(sums, body.end - body.begin, combined)
   if (get_local_id(0) != 0) return;
-  store_vector(body.is_held ? (double3)(0) : total.force, rigid_force, 2 * b);
-  store_vector(body.is_held ? (double3)(0) : total.torque, rigid_force, 2 * b + 1);
+  store_vector(felt_force(&body, total.force), rigid_force, 2 * b);
+  store_vector(felt_torque(&body, total.torque), rigid_force, 2 * b + 1);
   bounds[b] = sums[0].xy;
 }

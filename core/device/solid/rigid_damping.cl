@@ -136,9 +136,11 @@ kernel void end_damping_of_bodies(const int count, const int first, global const
                                   global double* rigid_force) {
   const int b = get_global_id(0);
   if (b >= count || rigid[b].is_held) return;
-  for (int k = 0; k < 2; ++k) {
-    const int to = 2 * b + k;
-    store_vector(vector_at(rigid_force, to) + vector_at(change_of_force, first + to), rigid_force,
-                 to);
-  }
+  const Rigid body = rigid[b];
+  const int of_force = 2 * b;
+  const int of_torque = 2 * b + 1;
+  const double3 force = felt_force(&body, vector_at(change_of_force, first + of_force));
+  const double3 torque = felt_torque(&body, vector_at(change_of_force, first + of_torque));
+  store_vector(vector_at(rigid_force, of_force) + force, rigid_force, of_force);
+  store_vector(vector_at(rigid_force, of_torque) + torque, rigid_force, of_torque);
 }

@@ -15,6 +15,15 @@ namespace {
 
 using namespace test;
 
+/// Puts the first body on an axle with a brake.
+void put_on_axle(Scene& scene) {
+  scene.default_interface.friction = 0.4;
+  BodyDescription& body = scene.bodies[0];
+  body.velocity.setZero();
+  body.axle = Axle{{0.6, 0, 0.8}, 0.002};
+  body.angular_velocity = 5 * body.axle->direction;
+}
+
 const SceneCase kScenes[] = {
     {"unchanged", [](Scene&) {}},
     {"friction", [](Scene& scene) { scene.default_interface.friction = 0.4; }},
@@ -43,6 +52,12 @@ const SceneCase kScenes[] = {
        scene.bodies[0].velocity.setZero();
        scene.bodies[0].angular_velocity.setZero();
        scene.bodies[0].motion = SlideMotion{{0.8, 0.6, 0}, 0.1, 0.2};
+     }},
+    {"body on an axle with a brake", put_on_axle},
+    {"strong damping and a body on an axle",
+     [](Scene& scene) {
+       put_on_axle(scene);
+       scene.default_interface.damping = 60;
      }},
     {"two dimensions",
      [](Scene& scene) {
@@ -244,9 +259,8 @@ TEST(RigidDevice, RefusesFeaturesThatItLacks) {
   const SceneCase cases[] = {
       {"/bodies/0/axle",
        [](Scene& s) {
-         s.bodies[0].axle = Axle{{0, 0, 1}};
-         s.bodies[0].velocity.setZero();
-         s.bodies[0].angular_velocity = {0, 0, 1};
+         put_on_axle(s);
+         s.numerics.integrator = IntegratorId::heun;
        }},
       {"/bodies/0/angular_velocity",
        [](Scene& s) {

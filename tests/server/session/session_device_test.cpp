@@ -30,13 +30,15 @@ const Json kColumn = Json::parse(R"({
               "shape": {"type": "box", "center": [0.13, 0.12, 0.15], "size": [0.24, 0.24, 0.28]}}],
   "numerics": {"step": 0.001, "tick": 0.004}})");
 /// A wheel, which a device does not support.
-const Json kWheel = {{"name", "wheel"},
-                     {"kind", "rigid"},
-                     {"material", "wood"},
-                     {"spacing", 0.04},
-                     {"position", {0.45, 0.12, 0.45}},
-                     {"shape", {{"type", "box"}, {"size", {0.08, 0.08, 0.08}}}},
-                     {"axle", {{"direction", {0, 1, 0}}}}};
+const Json kDriven = {
+    {"name", "driven body"},
+    {"kind", "rigid"},
+    {"material", "wood"},
+    {"spacing", 0.04},
+    {"position", {0.45, 0.12, 0.45}},
+    {"shape", {{"type", "box"}, {"size", {0.08, 0.08, 0.08}}}},
+    {"angular_velocity", {0, 1, 0}},
+    {"motion", {{"type", "slide"}, {"axis", {1, 0, 0}}, {"stroke", 0.01}, {"period", 1}}}};
 
 Json column_on(const std::string& device) {
   Json scene = kColumn;
@@ -131,8 +133,8 @@ TEST_F(SessionDevice, ScenesWithOtherFeaturesAreRejected) {
   step(1);
   const std::string before = hash();
   Json scene = kColumn;
-  for (const char* name : {"wheel", "second wheel"}) {
-    scene["bodies"].push_back(kWheel);
+  for (const char* name : {"driven body", "second driven body"}) {
+    scene["bodies"].push_back(kDriven);
     scene["bodies"].back()["name"] = name;
   }
   for (const char* method : {"session.create", "scene.load"}) {
@@ -141,7 +143,8 @@ TEST_F(SessionDevice, ScenesWithOtherFeaturesAreRejected) {
     if (method == std::string("session.create")) params["name"] = "other";
     const Json error = client().error(method, params);
     EXPECT_EQ(error.at("data").at("kind"), "invalid_params");
-    EXPECT_THAT(paths_of(error), ElementsAre("/scene/bodies/1/axle", "/scene/bodies/2/axle"));
+    EXPECT_THAT(paths_of(error), ElementsAre("/scene/bodies/1/angular_velocity",
+                                             "/scene/bodies/2/angular_velocity"));
   }
   EXPECT_EQ(hash(), before);
   EXPECT_EQ(device(), "opencl:0");
@@ -260,12 +263,12 @@ TEST_F(SessionDevice, TheCpuTakesTheStepsWhileTheSceneHasOtherFeatures) {
   create(kColumn);
   step(1);
   client().mark();
-  const Json body = client().result("world.add_body", {{"body", kWheel}}).at("body");
+  const Json body = client().result("world.add_body", {{"body", kDriven}}).at("body");
   step(2);
   const std::vector<Json> events = client().events("session.device");
   ASSERT_EQ(events.size(), 1U);
   EXPECT_EQ(events[0].at("code"), "not_on_device");
-  EXPECT_EQ(events[0].at("path"), "/bodies/1/axle");
+  EXPECT_EQ(events[0].at("path"), "/bodies/1/angular_velocity");
   EXPECT_EQ(device_steps(), 4);
   crash(kOfScene);
   step(1);
@@ -277,7 +280,7 @@ TEST_F(SessionDevice, TheCpuTakesTheStepsWhileTheSceneHasOtherFeatures) {
   client().result("control.reset");
   step(1);
   EXPECT_EQ(device_steps(), before + 8);
-  client().result("world.add_body", {{"body", kWheel}});
+  client().result("world.add_body", {{"body", kDriven}});
   step(3);
   client().result("world.remove_body", {{"body", 3}});
   step(1);
