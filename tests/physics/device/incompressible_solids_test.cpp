@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "protocol/scene/scene_json.h"
 #include "tests/physics/device/on_device.h"
 #include "tests/physics/device/pool.h"
 
@@ -193,6 +194,13 @@ TEST(IncompressibleSolidsDevice, HasTheSameBitsOnEveryDeviceIfExact) {
   Simulation device = make_on_device(scene);
   EXPECT_EQ(device.advance(30).device_steps, 30U);
   EXPECT_EQ(device.state_hash(), 0x70aacd1eb80cbe9U);
+}
+
+TEST(IncompressibleSolidsDevice, TakesTheStepsOfTheCatalogue) {
+  const Result<Scene> scene = read_scene_file(VAT_SOURCE_DIR "/protocol/scenes/deep-tank.json");
+  Simulation device = make_on_device(scene.value());
+  EXPECT_EQ(device.advance(80).device_steps, 80U);
+  EXPECT_EQ(device.state_hash(), 0xb0ae91be1ea7afc2U);
 }
 
 TEST(IncompressibleSolidsDevice, LeavesAFailedStepToTheCpu) {
