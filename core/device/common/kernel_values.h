@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cstdint>
 #include <span>
 
@@ -53,6 +54,11 @@ inline bool has_table_of_liquids(const Model& model) {
 /// Returns the bytes of a number in the precision of these sums.
 inline std::size_t bytes_of_real(const Model& model) {
   return has_double_pairs(model) ? sizeof(double) : sizeof(float);
+}
+
+/// Returns a number rounded to 50 bits, see particles.cl.
+inline double without_last_bits(double a) {
+  return std::bit_cast<double>((std::bit_cast<std::int64_t>(a) + 4) & ~std::int64_t{7});
 }
 
 /// Write and read numbers in the precision of the sums over pairs of the program.

@@ -319,7 +319,8 @@ kernel void find_acceleration(const Parameters p, global const int* begins,
                      a PASS_LIQUIDS);
   for (int lane = 0; lane < LANES && first + lane < p.count + p.solids; ++lane) {
     const int slot = first + lane;
-    if (!is_solid(sorted_place[slot])) acceleration[order[slot]] = (real4)(a[lane], 0);
+    if (is_solid(sorted_place[slot])) continue;
+    acceleration[order[slot]] = (real4)(stored_acceleration(a[lane]), 0);
   }
 }
 

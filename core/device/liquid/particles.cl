@@ -15,6 +15,14 @@ typedef long4 place4;
 #define convert_coord_rte convert_long_rte
 #define as_real as_double
 #define as_coord as_long
+// A state has forces, which are mass * acceleration. Without its last three bits, an acceleration
+// follows exactly from the rounded force.
+double without_last_bits(double a) {
+  return as_double((as_long(a) + 4) & ~7L);
+}
+double3 stored_acceleration(double3 a) {
+  return (double3)(without_last_bits(a.x), without_last_bits(a.y), without_last_bits(a.z));
+}
 #else
 typedef float real;
 typedef float3 real3;
@@ -25,6 +33,7 @@ typedef int4 place4;
 #define convert_coord_rte convert_int_rte
 #define as_real as_float
 #define as_coord as_int
+#define stored_acceleration(a) (a)
 #endif
 
 typedef struct {

@@ -161,8 +161,10 @@ void TaitMethod::write(const State& state) {
   accelerations_.assign(4 * n, 0);
   if (state.forces_current) {
     for (std::size_t i = 0; i < n; ++i) {
-      Eigen::Map<Vec3>(accelerations_.data() + 4 * i) =
-          state.forces.particle[i] * model().inverse_mass[i];
+      const Vec3 a = state.forces.particle[i] * model().inverse_mass[i];
+      for (int k = 0; k < 3; ++k) {
+        accelerations_[4 * i + static_cast<std::size_t>(k)] = without_last_bits(a[k]);
+      }
     }
   }
   write_reals(program_, now_.acceleration, accelerations_);

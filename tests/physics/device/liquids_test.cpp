@@ -98,5 +98,12 @@ TEST(LiquidsDevice, HasTheMotionOfTheCpuWithSeveralLiquids) {
   }
 }
 
+TEST(LiquidsDevice, HaveTheSameBitsInAnyPortionsOfSteps) {
+  expect_same_bits_in_any_portions(make_layers(), 4);
+  Scene exact = make_layers();
+  exact.pair_precision = PairPrecision::double_precision;
+  expect_same_bits_in_any_portions(exact, 4);
+}
+
 }  // namespace
 }  // namespace vat::liquids_device_test
