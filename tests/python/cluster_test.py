@@ -104,7 +104,8 @@ class Cluster(unittest.TestCase):
         at_once = Client(self.urls[owner], reconnect_time=0)
         self.addCleanup(at_once.close)
         at_once.join("s1")
-        with Client(self.urls[owner]) as client:
+        # Take-overs of a busy machine can take longer than the default.
+        with Client(self.urls[owner], reconnect_time=120) as client:
             client.join("s1", name="Ada")
             client.call("frames.subscribe")
             client.next_frame()
