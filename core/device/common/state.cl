@@ -1,3 +1,5 @@
+#define INLINE inline __attribute__((always_inline))
+
 // The check of states, and sums over all particles.
 
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
@@ -62,15 +64,20 @@ double4 combined(double4 a, double4 b) {
   return (double4)(a.x + b.x, a.y + b.y, a.z + b.z, greater(a.w, b.w));
 }
 
-// Combines the values of a group by `combine` in a tree, into values[0]. The values from `count` on
-// are 0. On a CPU, one work-item does so, because a barrier takes more time than some combinations.
+// The least power of two that is not less than `count`, at most GROUP.
+int leaves_of_tree(int count) {
+  return count <= 1 ? 1 : 2 << (31 - clz(min(count, GROUP) - 1));
+}
+
+// Combines `count` values of a group by `combine` in a tree, into values[0]. The values from `count`
+// to leaves_of_tree(count) are 0. On a CPU, one work-item does so, because a barrier takes more time than some combinations.
 #if LANES > 1
 #define COMBINE_SOME(values, count, combine)                                   \
   {                                                                            \
     barrier(CLK_LOCAL_MEM_FENCE);                                              \
     if (get_local_id(0) == 0) {                                                \
-      for (int width = GROUP / 2; width > 0; width /= 2) {                     \
-        for (int t = 0; t < min(width, count); ++t) {                          \
+      for (int width = leaves_of_tree(count) / 2; width > 0; width /= 2) {     \
+        for (int t = 0; t < width; ++t) {                                      \
           values[t] = combine(values[t], values[t + width]);                   \
         }                                                                      \
       }                                                                        \
@@ -82,7 +89,7 @@ double4 combined(double4 a, double4 b) {
   {                                                                            \
     const int t = get_local_id(0);                                             \
     barrier(CLK_LOCAL_MEM_FENCE);                                              \
-    for (int width = GROUP / 2; width > 0; width /= 2) {                       \
+    for (int width = leaves_of_tree(count) / 2; width > 0; width /= 2) {       \
       if (t < width) values[t] = combine(values[t], values[t + width]);        \
       barrier(CLK_LOCAL_MEM_FENCE);                                            \
     }                                                                          \
@@ -120,3 +127,10 @@ double4 sum_partial(local double4* sums, int count, global const double4* partia
   return sum_group(sums, own);
 }
 
+
+#if LANES > 1
+// The lowest bits of eight numbers that are 0 or -1.
+INLINE uint byte_of(char8 bits) {
+  return ((as_ulong(bits) & 0x0101010101010101UL) * 0x0102040810204080UL) >> 56;
+}
+#endif

@@ -83,10 +83,10 @@ void DeviceGas::add_forces(const Model& model, const DeviceSolids& bodies, Real 
   const SolidTables& t = at.tables;
   const GasStep step = step_of(model, end);
   program_.run("find_gas_pressure", model.particle_count, p, step, at.cells.begins, at.order,
-               at.sorted_position, at.predicted, t.mass, t.body_of, t.bodies, gases_,
+               at.sorted, at.predicted, t.mass, t.body_of, t.bodies, gases_,
                volume_and_pressure_, sorted_velocity_);
   program_.run("add_gas_forces", model.particle_count, p, step, at.cells.begins, at.order,
-               at.sorted_position, volume_and_pressure_, sorted_velocity_, t.mass, t.body_of,
+               at.sorted, volume_and_pressure_, sorted_velocity_, t.mass, t.body_of,
                t.bodies, gases_, bodies.force());
 }
 

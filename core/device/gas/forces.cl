@@ -26,15 +26,15 @@ typedef struct {
   {                                                                            \
     const double place[3] = {at.x, at.y, at.z};                                \
     FOR_EACH_ROW_OF_SOLIDS(&p, place, support, begins, {                       \
-      for (int slot = begin; slot < end; ++slot) {                             \
-        const double3 across = (double3)(shift[0], shift[1], shift[2]);        \
-        const double3 way = at - sorted_position[slot].xyz + across;           \
-        const double square = product(way, way);                               \
+      FOR_EACH_NEAR(&p, sorted, begin, end, at, shift, support * support, -1, { \
         const int j = order[slot];                                             \
-        if (!(square < support * support) || j == i || j >= p.liquids) continue; \
+        if (j == i || j >= p.liquids) continue;                                \
         if (bodies[body_of[j]].material != material) continue;                 \
+        const double3 across = (double3)(shift[0], shift[1], shift[2]);        \
+        const double3 way = at - sorted_at(&p, sorted, slot) + across;         \
+        const double square = product(way, way);                               \
         BODY                                                                   \
-      }                                                                        \
+      })                                                                       \
     })                                                                         \
   }
 
@@ -42,7 +42,7 @@ typedef struct {
 // the order of cells. The fourth component of `sorted_velocity` is the density / that with liquid beyond
 // no-slip walls.
 kernel void find_gas_pressure(const Solids p, const GasStep step, global const int* begins,
-                              global const int* order, global const double4* sorted_position,
+                              global const int* order, global const double* sorted,
                               global const double* predicted, global const double* mass,
                               global const int* body_of, global const Body* bodies,
                               global const Gas* gases, global double2* volume_and_pressure,
@@ -54,7 +54,7 @@ kernel void find_gas_pressure(const Solids p, const GasStep step, global const i
   const int material = bodies[body_of[i]].material;
   const Gas gas = gases[material];
   const double support = gas.support;
-  const double3 at = sorted_position[own_slot].xyz;
+  const double3 at = sorted_at(&p, sorted, own_slot);
   double sum = mass[i] * (support * support * support * support * support * support);
   FOR_EACH_GAS_NEIGHBOUR({
     const double rest = support * support - square;
@@ -70,7 +70,7 @@ kernel void find_gas_pressure(const Solids p, const GasStep step, global const i
 
 // Adds the forces of pressure, viscosity, no-slip walls and settling.
 kernel void add_gas_forces(const Solids p, const GasStep step, global const int* begins,
-                           global const int* order, global const double4* sorted_position,
+                           global const int* order, global const double* sorted,
                            global const double2* volume_and_pressure,
                            global const double4* sorted_velocity, global const double* mass,
                            global const int* body_of, global const Body* bodies,
@@ -82,7 +82,7 @@ kernel void add_gas_forces(const Solids p, const GasStep step, global const int*
   const int material = bodies[body_of[i]].material;
   const Gas gas = gases[material];
   const double support = gas.support;
-  const double3 at = sorted_position[own_slot].xyz;
+  const double3 at = sorted_at(&p, sorted, own_slot);
   const double3 v = sorted_velocity[own_slot].xyz;
   const double filled = sorted_velocity[own_slot].w;
   const double2 own = volume_and_pressure[own_slot];

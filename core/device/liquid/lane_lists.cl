@@ -3,8 +3,6 @@
 
 #if LANES > 1
 
-#define INLINE inline __attribute__((always_inline))
-
 // Greatest number of neighbours in a list.
 #define MOST_NEIGHBOURS 256
 
@@ -17,11 +15,6 @@ INLINE int append(uint* list, int count, uint byte, uint first, global const uch
   const uint8 found = convert_uint8(vload8(byte, selected)) + first;
   vstore8(found, 0, list + min(count, MOST_NEIGHBOURS));
   return count + popcount(byte);
-}
-
-// The lowest bits of eight numbers that are 0 or -1.
-INLINE uint byte_of(char8 bits) {
-  return ((as_ulong(bits) & 0x0101010101010101UL) * 0x0102040810204080UL) >> 56;
 }
 
 // The positions of some targets, or of their images in one mirror.

@@ -77,40 +77,67 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void open_damping(
   progress->is_open = needs_iteration(&damping, progress);
 }
 
-// Computes D times the direction, and <d, (M - dt D) d> of free particles.
+// Adds the dampers of the target's springs, whose directions are `ways`. `change` is the change of the
+// velocities.
+INLINE void add_dampers(global const uint* begins, global const SpringEnd* ends, global const double* ways,
+                 global const double* change, Target* t) {
+  const uint end = begins[t->index + 1];
+  for (uint s = begins[t->index]; s < end; ++s) {
+    const double3 n = vector_at(ways, s);
+    const double speed = product(t->w - vector_at(change, ends[s].other), n);
+    t->force -= (ends[s].damping * speed) * n;
+  }
+}
+
+// Computes D times the direction, and <d, (M - dt D) d> of free particles. Uses the contacts and the
+// directions of springs of find_solid_forces().
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multiply_damping(
     const Solids p, const Damping damping, global const DampingProgress* progress,
-    global const int* begins, global const int* order, global const double4* sorted_position,
+    global const int* begins, global const int* order, global const double* sorted,
     global const double* position, global const double* predicted, global const double* direction,
     global const double* spins, global const double* spin_changes, global const double* mass,
     global const double* radius, global const int* body_of, global const Body* bodies,
     global const ContactLaw* laws, global const uint* exclusion_begin,
     global const uint* exclusions, global const uint* spring_begin,
-    global const SpringEnd* springs, global double* multiplied, global double* torque,
+    global const SpringEnd* springs, global int* contact_counts, global uint* contacts,
+    global const double* ways, global double* multiplied, global double* torque,
     global double4* partial) {
   local double4 sums[GROUP];
   if (!progress->is_open) return;
-  const int slot = get_global_id(0);
+  const int i = get_global_id(0);
+  const int acting = i < p.count ? contact_counts[i] : 0;
   double4 own = 0;
-  if (slot < p.count) {
-    const int i = order[slot];
-    Target t =
-        target_at(&p, i, sorted_position[slot].xyz, predicted, spins, mass, radius, body_of);
+  if (acting != 0 || i < p.free) {
+    Target t = target_at(&p, i, place_of_solid(&p, position, i), predicted, spins, mass, radius,
+                         body_of);
     t.is_change = 1;
     t.w = vector_at(direction, i);
     t.spin_change = vector_at(spin_changes, t.body);
-    if (p.reach > 0) {
-      add_contacts(&p, begins, order, sorted_position, predicted, direction, spins, spin_changes,
-                   mass, radius, body_of, bodies, laws, exclusion_begin, exclusions, &t);
+    const ContactColumns columns = {begins, order, sorted, predicted, direction, spins,
+                                    spin_changes, mass, radius, body_of, bodies, laws,
+                                    exclusion_begin, exclusions};
+    const int count = acting & (WALLS_ACT - 1);
+    if (count > MOST_CONTACTS) {
+      const ContactLists none = {0, contact_counts, contacts};
+      add_contacts(&p, &columns, &none, &t);
+    } else {
+      for (int k = 0; k < count; ++k) {
+        const uint near = contacts[k * p.count + i];
+        add_contact_at(&p, &columns, near & ((1u << IMAGE_BIT) - 1),
+                       shift_to(&p, near >> IMAGE_BIT), &t);
+      }
     }
-    if (i < p.implicit) add_springs(&p, spring_begin, springs, position, direction, &t);
-    if (p.walls_push) {
+    if (i < p.implicit) add_dampers(spring_begin, springs, ways, direction, &t);
+    if (acting & WALLS_ACT) {
       const int of_wall = p.materials * p.materials + p.materials + bodies[t.body].material;
       add_walls(&p, laws[of_wall], &t);
     }
     store_vector(t.force, multiplied, i);
     store_vector(t.torque, torque, i);
     if (i < p.free) own.x = product(t.w, t.mass * t.w - damping.dt * t.force);
+  } else if (i < p.count) {
+    store_vector((double3)(0), multiplied, i);
+    store_vector((double3)(0), torque, i);
   }
   write_partial(sums, own, partial);
 }

@@ -5,6 +5,7 @@
 
 #include "core/damping/damping_solve.h"
 #include "core/device/common/kernel_values.h"
+#include "core/support/check.h"
 
 namespace vat {
 namespace {
@@ -12,6 +13,15 @@ namespace {
 using opencl::Program;
 
 constexpr std::size_t kColumn = 3 * sizeof(double);
+constexpr std::size_t kMostContacts = 16;                 // MOST_CONTACTS of forces.cl
+constexpr std::size_t kMostSlots = std::size_t{1} << 27;  // of IMAGE_BIT
+
+std::size_t slots_of_memory(const Model& model) {
+  return model.damping.any ? SolidRange(model).count : 1;
+}
+std::size_t ways_of_memory(const Model& model) {
+  return std::max<std::size_t>(1, model.damping.any ? model.spring_ends.size() : 0);
+}
 
 /// The bytes of the partial sums of the groups of particles and of the rigid bodies.
 std::size_t bytes_of_sums(const Model& model) {
@@ -26,6 +36,19 @@ std::size_t bytes_of_vector(const Model& model) {
 }
 
 }  // namespace
+
+RememberedForces::RememberedForces(Program& program, const Model& model)
+    : is_used(model.damping.any ? 1 : 0),
+      contact_counts(program, slots_of_memory(model) * sizeof(std::int32_t)),
+      contacts(program, slots_of_memory(model) * kMostContacts * sizeof(std::uint32_t)),
+      ways(program, ways_of_memory(model) * kColumn) {
+  VAT_CHECK(SolidRange(model).count <= kMostSlots);
+}
+
+std::size_t RememberedForces::bytes_for(const Model& model) {
+  return slots_of_memory(model) * (sizeof(std::int32_t) + kMostContacts * sizeof(std::uint32_t)) +
+         ways_of_memory(model) * kColumn;
+}
 
 DampingParameters damping_parameters(Real dt, Real total_mass, std::size_t count) {
   return {dt,
@@ -91,6 +114,7 @@ void DeviceDamping::iterate(const SolidParameters& p, const DampingParameters& d
                             const PlacedSolids& solids) {
   const SolidTables& t = solids.tables;
   const DeviceRigidBodies& r = solids.rigid;
+  const RememberedForces& memory = solids.memory;
   const std::int32_t first = number_of(count_);
   const std::int32_t bodies = number_of(bodies_);
   constexpr std::size_t kOne = Program::kGroup;
@@ -104,9 +128,10 @@ void DeviceDamping::iterate(const SolidParameters& p, const DampingParameters& d
                  direction_);
   }
   program_.run("multiply_damping", count_, p, damping, progress_, solids.cells.begins, solids.order,
-               solids.sorted_position, solids.position, solids.predicted, direction_, r.spins,
-               spin_change_, t.mass, t.radius, t.body_of, t.bodies, t.laws, t.exclusion_begin,
-               t.exclusions, t.spring_begin, t.springs, multiplied_, torque_, partial_);
+               solids.sorted, solids.position, solids.predicted, direction_, r.spins, spin_change_,
+               t.mass, t.radius, t.body_of, t.bodies, t.laws, t.exclusion_begin, t.exclusions,
+               t.spring_begin, t.springs, memory.contact_counts, memory.contacts, memory.ways,
+               multiplied_, torque_, partial_);
   if (bodies_ > 0) {
     program_.run_in_lanes("multiply_damping_of_bodies", bodies_ * kOne, damping, first,
                           groups_of(count_), r.rigid, r.poses, solids.position, torque_, direction_,

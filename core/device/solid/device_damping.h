@@ -52,16 +52,30 @@ int run_iterations(opencl::Program& program, const opencl::Buffer& progress_on_d
   return progress.iterations;
 }
 
+/// Acting contacts and the directions of springs on a device, which a solve for damping uses again.
+/// Small buffers that are not used if no force is damped.
+struct RememberedForces {
+  RememberedForces(opencl::Program& program, const Model& model);
+
+  /// Returns the bytes of the buffers.
+  static std::size_t bytes_for(const Model& model);
+
+  std::int32_t is_used;
+  opencl::Buffer contact_counts, contacts;  ///< see ContactLists of forces.cl
+  opencl::Buffer ways;                      ///< by end of springs
+};
+
 /// The present particles of bodies on a device, for sums over their neighbours.
 struct PlacedSolids {
   const SolidTables& tables;
   const DeviceCells& cells;
   const opencl::Buffer& order;
-  const opencl::Buffer& sorted_position;
+  const opencl::Buffer& sorted;  ///< see particles.cl
   const opencl::Buffer& position;
   const opencl::Buffer& velocity;
   const opencl::Buffer& predicted;  ///< velocities in forces
   const DeviceRigidBodies& rigid;
+  const RememberedForces& memory;  ///< of the last forces
 };
 
 /// Converts forces to those at the velocities after a step, as solve_damping(), on a device. The

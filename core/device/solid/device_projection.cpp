@@ -198,12 +198,11 @@ std::size_t DeviceProjection::find(const SolidParameters& p, const Step& step,
                s.cells.counts);
   s.cells.sort();
   program_.run("collect_solids", particles_, p, s.cells.cell_of, s.cells.begins, s.cells.unsorted,
-               s.motion.position, s.tables.body_of, s.order, s.sorted_position);
+               s.motion.position, s.tables.body_of, s.order, s.sorted);
   for (const std::int32_t is_writing : {0, 1}) {
     program_.run("find_projections", particles_, p, step, is_writing, s.cells.begins, s.order,
-                 s.sorted_position, s.tables.mobility, s.tables.radius, s.tables.body_of,
-                 s.tables.bodies, laws_, s.rigid.rigid_of, s.rigid.rigid, begins_, counts_,
-                 contacts_);
+                 s.sorted, s.tables.mobility, s.tables.radius, s.tables.body_of, s.tables.bodies,
+                 laws_, s.rigid.rigid_of, s.rigid.rigid, begins_, counts_, contacts_);
     if (is_writing == 0) sums_.sum(counts_, begins_);
   }
   program_.run("begin_projections", 1, number_of(particles_), number_of(capacity_), begins_,

@@ -23,7 +23,7 @@ struct ProjectedSolids {
   DeviceRigidBodies& rigid;
   DeviceCells& cells;
   const opencl::Buffer& order;
-  const opencl::Buffer& sorted_position;
+  const opencl::Buffer& sorted;
   const opencl::Buffer& predicted;  ///< overwritten
 };
 

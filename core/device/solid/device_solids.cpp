@@ -17,6 +17,7 @@ using opencl::Program;
 
 constexpr std::size_t kVector = 3 * sizeof(double);
 constexpr std::size_t kVector4 = 4 * sizeof(double);
+constexpr std::size_t kSortedEnd = 8;  // SORTED_END of particles.cl
 
 /// An Oscillation of the kernels.
 struct Bound {
@@ -55,7 +56,8 @@ DeviceSolids::DeviceSolids(Program& program, const Model& model, const GuardBoun
       saved_force_(program, range_.count * kVector),
       predicted_(program, range_.count * kVector),
       order_(program, range_.count * sizeof(std::int32_t)),
-      sorted_position_(program, range_.count * kVector4),
+      sorted_(program, (range_.count + kSortedEnd) * kVector4),
+      memory_(program, model),
       pressure_(program, std::max<std::size_t>(1, model.cells.size()) * sizeof(double)),
       partial_(program, groups_of_solids(model) * sizeof(Bound)),
       bounds_of_bodies_(program,
@@ -74,6 +76,7 @@ std::size_t DeviceSolids::bytes_for(const Model& model) {
   const std::size_t n = SolidRange(model).count;
   return SolidTables::bytes_for(model) + DeviceCells::bytes_for(n, geometry.cell_count()) +
          n * (2 * DeviceMotion::kBytes + 3 * kVector + kVector4 + sizeof(std::int32_t)) +
+         kSortedEnd * kVector4 + RememberedForces::bytes_for(model) +
          model.cells.size() * sizeof(double) +
          (groups_of_solids(model) + model.rigid_bodies.size() + 1) * sizeof(Bound) +
          DeviceRigidBodies::bytes_for(model) + DeviceDamping::bytes_for(model) +
@@ -153,7 +156,7 @@ void DeviceSolids::enter(const SolidParameters& before, const SolidParameters& a
                counters);
   cells_.sort();
   program_.run("collect_solids", range_.count, after, cells_.cell_of, cells_.begins,
-               cells_.unsorted, motion_.position, t.body_of, order_, sorted_position_);
+               cells_.unsorted, motion_.position, t.body_of, order_, sorted_);
 }
 
 void DeviceSolids::place(Real time, const opencl::Buffer& counters) {
@@ -288,11 +291,11 @@ void DeviceSolids::divide_kicks(SolidParameters& p, Real time, Real step,
 
 void DeviceSolids::find_forces(Real end) {
   const SolidTables& t = tables_;
-  program_.run("find_solid_forces", range_.count, parameters(end), cells_.begins, order_,
-               sorted_position_, motion_.position, predicted_, rigid_.spins, t.mass, t.mobility,
-               t.radius, t.body_of, t.bodies, t.laws, t.exclusion_begin, t.exclusions,
-               t.spring_begin, t.springs, t.corner_begin, t.corners, t.cells, pressure_, force_,
-               rigid_.torque, rigid_.loads, partial_);
+  program_.run("find_solid_forces", range_.count, parameters(end), cells_.begins, order_, sorted_,
+               motion_.position, predicted_, rigid_.spins, t.mass, t.mobility, t.radius, t.body_of,
+               t.bodies, t.laws, t.exclusion_begin, t.exclusions, t.spring_begin, t.springs,
+               t.corner_begin, t.corners, t.cells, pressure_, force_, rigid_.torque, rigid_.loads,
+               partial_, memory_.is_used, memory_.contact_counts, memory_.contacts, memory_.ways);
 }
 
 void DeviceSolids::gather() {

@@ -128,8 +128,8 @@ class DeviceSolids {
   SolidParameters parameters(Real end) const { return geometry_.at(model_, {end, 0, 0, 0, 0}); }
   /// Returns the particles after move().
   PlacedSolids placed() const {
-    return {tables_,          cells_,           order_,     sorted_position_,
-            motion_.position, motion_.velocity, predicted_, rigid_};
+    return {tables_,          cells_,     order_, sorted_, motion_.position,
+            motion_.velocity, predicted_, rigid_, memory_};
   }
 
   // Buffers in the order of particles:
@@ -158,7 +158,7 @@ class DeviceSolids {
   void end_divided_step(const SolidParameters& p, Real time, Real step,
                         const opencl::Buffer& counters);
   ProjectedSolids projected() {
-    return {tables_, motion_, rigid_, cells_, order_, sorted_position_, predicted_};
+    return {tables_, motion_, rigid_, cells_, order_, sorted_, predicted_};
   }
   void kick(Real dt);
   /// Ends a step of symplectic Euler with contacts by projection after its kick.
@@ -181,7 +181,8 @@ class DeviceSolids {
   DeviceMotion motion_, saved_motion_;
   opencl::Buffer force_, saved_force_;
   opencl::Buffer predicted_;  ///< velocities in forces
-  opencl::Buffer order_, sorted_position_;
+  opencl::Buffer order_, sorted_;
+  const RememberedForces memory_;
   opencl::Buffer pressure_;                               ///< by cell of deformable bodies
   opencl::Buffer partial_, bounds_of_bodies_, greatest_;  ///< bounds of groups, rigid bodies, all
   DeviceDamping damping_;

@@ -84,9 +84,9 @@ Real DeviceStepLimits::least_step(const Model& model, Real time, Real longest, R
   const SolidTables& t = s.tables;
   program_.run("find_ways", count_, p, search, s.predicted, t.body_of, t.bodies, partial_);
   program_.run("find_approach", Program::kGroup, search, groups_of(count_), partial_, approach_);
-  program_.run("predict_contacts", count_, p, search, approach_, s.cells.begins, s.order,
-               s.sorted_position, s.predicted, t.mass, mobility_, t.radius, t.body_of, t.bodies,
-               t.laws, t.exclusion_begin, t.exclusions, predictions_);
+  program_.run("predict_contacts", count_, p, search, approach_, s.cells.begins, s.order, s.sorted,
+               s.predicted, t.mass, mobility_, t.radius, t.body_of, t.bodies, t.laws,
+               t.exclusion_begin, t.exclusions, predictions_);
   program_.run_in_lanes("limit_steps_of_bodies", bodies_ * Program::kGroup, search,
                         number_of(free_), s.rigid.rigid, s.rigid.poses, s.position, predictions_,
                         steps_);

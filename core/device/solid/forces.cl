@@ -58,12 +58,12 @@ double3 direction_if_coincident(uint i, uint j, int dimensions) {
   return i < j ? unit : -unit;
 }
 
-double3 direction_of(const Solids* p, double3 x, double r, int i, int j) {
+INLINE double3 direction_of(const Solids* p, double3 x, double r, int i, int j) {
   return r > 0 ? x * (1 / r) : direction_if_coincident(p->first + i, p->first + j, p->dimensions);
 }
 
 // The drag / slip speed of friction with the rate `sticking`, see Friction::drag().
-double friction_drag(double coefficient, double sticking, double push, double3 slip) {
+INLINE double friction_drag(double coefficient, double sticking, double push, double3 slip) {
   const double limit = coefficient * push;
   const double speed = sqrt(product(slip, slip));
   return sticking * speed > limit ? limit / speed : sticking;
@@ -81,7 +81,7 @@ typedef struct {
   double3 spin_change;
 } Other;
 
-Other other_at(const Solids* p, int is_change, int j, int body, global const double* predicted,
+INLINE Other other_at(const Solids* p, int is_change, int j, int body, global const double* predicted,
                global const double* change, global const double* spins,
                global const double* spin_changes, global const double* mass,
                global const double* radius) {
@@ -98,7 +98,7 @@ typedef struct {
   double3 its;
 } Arms;
 
-Arms arms_of(const Target* t, const Other* o, double3 way) {
+INLINE Arms arms_of(const Target* t, const Other* o, double3 way) {
   Arms arms = {(double3)(0), (double3)(0)};
   if (!t->is_rigid && !o->is_rigid) return arms;
   const double own = !t->is_rigid ? 0 : o->is_rigid ? t->radius / (t->radius + o->radius) : 1;
@@ -107,18 +107,19 @@ Arms arms_of(const Target* t, const Other* o, double3 way) {
   return arms;
 }
 
-double3 across(double3 v, double3 n) {
+INLINE double3 across(double3 v, double3 n) {
   return v - product(v, n) * n;
 }
 
-// Adds the contact with another particle at the distance r; see add_contacts().
-void add_contact(const Solids* p, ContactLaw law, const Other* o, double3 x, double r,
+// Adds the contact with another particle at the distance r; see add_contacts(). Returns false if the
+// contact does not act.
+INLINE bool add_contact(const Solids* p, ContactLaw law, const Other* o, double3 x, double r,
                  double threshold, Target* t) {
   const double3 n = direction_of(p, x, r, t->index, o->index);
   const double3 relative = t->v - o->v;
   const double speed = product(relative, n);
   const double push = law.stiffness * (threshold - r) - law.damping * speed;
-  if (push <= 0) return;
+  if (push <= 0) return false;
   t->force +=
       t->is_change ? -(law.damping * product(t->w - o->w, n)) * n : push * n;
   double sticking = 0;
@@ -136,6 +137,7 @@ void add_contact(const Solids* p, ContactLaw law, const Other* o, double3 x, dou
   }
   t->stiffness += 2 * law.stiffness;
   t->damping += 2 * fmax(law.damping, sticking);
+  return true;
 }
 
 // Whether two particles of one body never touch.
@@ -153,61 +155,106 @@ bool is_excluded(global const uint* begins, global const uint* excluded, int i, 
   return low < begins[i + 1] && excluded[low] == j;
 }
 
-// Adds the contacts with the particles in the cells around the target.
-void add_contacts(const Solids* p, global const int* begins, global const int* order,
-                  global const double4* sorted_position, global const double* predicted,
-                  global const double* change, global const double* spins,
-                  global const double* spin_changes, global const double* mass, global const double* radius,
-                  global const int* body_of, global const Body* bodies,
-                  global const ContactLaw* laws, global const uint* exclusion_begin,
-                  global const uint* exclusions, Target* t) {
+// The columns that contacts depend on. `change` and `spin_changes` are those of Target::is_change.
+typedef struct {
+  global const int* begins;
+  global const int* order;
+  global const double* sorted;
+  global const double* predicted;
+  global const double* change;
+  global const double* spins;
+  global const double* spin_changes;
+  global const double* mass;
+  global const double* radius;
+  global const int* body_of;
+  global const Body* bodies;
+  global const ContactLaw* laws;
+  global const uint* exclusion_begin;
+  global const uint* exclusions;
+} ContactColumns;
+
+// The contacts that act on each particle, for solves that use them again. They have the order of
+// cells. Contact k of particle i is near[k * p.count + i]: the slot of the other particle, and above
+// it the image. Lists of more than MOST_CONTACTS are not complete.
+typedef struct {
+  int is_kept;
+  global int* counts;
+  global uint* near;
+} ContactLists;
+
+#define MOST_CONTACTS 16
+#define IMAGE_BIT 27
+#define WALLS_ACT 0x100000
+
+// The number of an image from 0 to 26, and the shift to it.
+INLINE uint image_of(const Solids* p, const double* shift) {
+  uint image = 0;
+  for (int k = 0; k < 3; ++k) image = 3 * image + (shift[k] < 0 ? 0 : shift[k] > 0 ? 2 : 1);
+  return image;
+}
+
+INLINE double3 shift_to(const Solids* p, uint image) {
+  return (double3)(((int)(image / 9) - 1) * p->period[0], ((int)(image / 3 % 3) - 1) * p->period[1],
+                   ((int)(image % 3) - 1) * p->period[2]);
+}
+
+// Adds the contact with the particle in a slot. Returns false if there is none, or if it does not act.
+INLINE bool add_contact_at(const Solids* p, const ContactColumns* c, int slot, double3 shift, Target* t) {
+  const int j = c->order[slot];
+  const int body = c->body_of[j];
+  const bool is_own = body == t->body;
+  if (j == t->index) return false;
+  const int material = c->bodies[t->body].material;
+  const int other = c->bodies[body].material;
+  // Within a liquid, there are other forces.
+  if (t->index < p->liquids && j < p->liquids && material == other) return false;
+  // The laws within bodies follow those between materials.
+  const ContactLaw law = c->laws[is_own ? p->materials * p->materials + material
+                                        : material * p->materials + other];
+  const double touching = t->radius + c->radius[j];
+  const double threshold = law.threshold > 0 ? law.threshold : touching;
+  const double3 x = t->x - sorted_at(p, c->sorted, slot) + shift;
+  const double square = product(x, x);
+  if (!(square < threshold * threshold)) return false;
+  if (is_own && is_excluded(c->exclusion_begin, c->exclusions, t->index, j)) return false;
+  const Other o = other_at(p, t->is_change, j, body, c->predicted, c->change, c->spins,
+                           c->spin_changes, c->mass, c->radius);
+  return add_contact(p, law, &o, x, sqrt(square), threshold, t);
+}
+
+// Adds the contacts with the particles in the cells around the target. Returns their number.
+INLINE int add_contacts(const Solids* p, const ContactColumns* c, const ContactLists* lists, Target* t) {
   const double at[3] = {t->x.x, t->x.y, t->x.z};
-  const Body mine = bodies[t->body];
-  const double untouched = mine.touches_itself ? -1 : t->body;
-  FOR_EACH_ROW_OF_SOLIDS(p, at, p->reach, begins, {
-    for (int slot = begin; slot < end; ++slot) {
-      const double4 its = sorted_position[slot];
-      if (its.w == untouched) continue;
-      const double3 way = t->x - its.xyz;
-      const double3 x = way + (double3)(shift[0], shift[1], shift[2]);
-      const double square = product(x, x);
-      if (!(square < p->reach * p->reach)) continue;
-      const int j = order[slot];
-      const int body = (int)its.w;
-      const bool is_own = body == t->body;
-      if (j == t->index) continue;
-      const int other = bodies[body].material;
-      // Within a liquid, there are other forces.
-      if (t->index < p->liquids && j < p->liquids && mine.material == other) continue;
-      // The laws within bodies follow those between materials.
-      const ContactLaw law =
-          laws[is_own ? p->materials * p->materials + mine.material
-                      : mine.material * p->materials + other];
-      const double touching = t->radius + radius[j];
-      const double threshold = law.threshold > 0 ? law.threshold : touching;
-      if (!(square < threshold * threshold)) continue;
-      if (is_own && is_excluded(exclusion_begin, exclusions, t->index, j)) continue;
-      const Other o = other_at(p, t->is_change, j, body, predicted, change, spins, spin_changes, mass,
-                               radius);
-      add_contact(p, law, &o, x, sqrt(square), threshold, t);
-    }
+  const double untouched = c->bodies[t->body].touches_itself ? -1 : t->body;
+  int count = 0;
+  FOR_EACH_ROW_OF_SOLIDS(p, at, p->reach, c->begins, {
+    const double3 to_image = (double3)(shift[0], shift[1], shift[2]);
+    FOR_EACH_NEAR(p, c->sorted, begin, end, t->x, shift, p->reach * p->reach, untouched, {
+      if (!add_contact_at(p, c, slot, to_image, t)) continue;
+      if (lists->is_kept && count < MOST_CONTACTS) {
+        lists->near[count * p->count + t->index] = slot | image_of(p, shift) << IMAGE_BIT;
+      }
+      ++count;
+    })
   })
+  return count;
 }
 
 // Adds the springs of the target, see add_spring_forces(). In a periodic world, they do not cross its
-// sides. `velocity` is the change of the
-// velocities if t->is_change is set.
-void add_springs(const Solids* p, global const uint* begins, global const SpringEnd* ends,
-                 global const double* position, global const double* velocity, Target* t) {
-  const double3 mine = t->is_change ? t->w : t->v;
+// sides. `ways` receives the directions of the springs if it is not null.
+INLINE void add_springs(const Solids* p, global const uint* begins, global const SpringEnd* ends,
+                 global const double* position, global const double* velocity,
+                 global double* ways, Target* t) {
   const double3 own = vector_at(position, t->index);
-  for (uint s = begins[t->index]; s < begins[t->index + 1]; ++s) {
+  const uint end = begins[t->index + 1];
+  for (uint s = begins[t->index]; s < end; ++s) {
     const SpringEnd spring = ends[s];
     const double3 x = own - vector_at(position, spring.other);
     const double r = sqrt(product(x, x));
     const double3 n = direction_of(p, x, r, t->index, spring.other);
-    const double speed = product(mine - vector_at(velocity, spring.other), n);
-    const double elastic = t->is_change ? 0 : spring.stiffness * (spring.rest_length - r);
+    if (ways != 0) store_vector(n, ways, s);
+    const double speed = product(t->v - vector_at(velocity, spring.other), n);
+    const double elastic = spring.stiffness * (spring.rest_length - r);
     t->force += (elastic - spring.damping * speed) * n;
   }
 }
@@ -284,7 +331,7 @@ kernel void find_cell_pressure(const int count, const int dimensions,
 }
 
 // Adds the forces of the cells of the target, see add_cell_forces().
-void add_cells(const Solids* p, global const uint* begins, global const uint2* corners,
+INLINE void add_cells(const Solids* p, global const uint* begins, global const uint2* corners,
                global const VolumeCell* cells, global const double* pressure,
                global const double* position, Target* t) {
   double3 sum = 0;
@@ -296,8 +343,8 @@ void add_cells(const Solids* p, global const uint* begins, global const uint2* c
   t->force += sum;
 }
 
-// Adds the forces of the walls, see add_wall_forces().
-void add_walls(const Solids* p, ContactLaw law, Target* t) {
+// Adds the forces of the walls, see add_wall_forces(). Returns whether a wall acts.
+INLINE bool add_walls(const Solids* p, ContactLaw law, Target* t) {
   const double threshold = law.threshold > 0 ? law.threshold : t->radius;
   const double sticking = law.friction > 0 ? sqrt(law.stiffness * t->mass) : 0;
   const double at[3] = {t->x.x, t->x.y, t->x.z};
@@ -328,9 +375,10 @@ void add_walls(const Solids* p, ContactLaw law, Target* t) {
     t->force += friction;
     t->torque += cross_product(arm, friction);
   }
-  if (count == 0) return;
+  if (count == 0) return false;
   t->stiffness += law.stiffness;
   t->damping += fmax(law.damping, sticking) + (count - 1) * sticking;
+  return true;
 }
 
 // The greater components of the values of a group.
@@ -341,13 +389,13 @@ double2 greatest_of_group(local double2* values, double2 own) {
 }
 
 // The bound of the oscillations of a particle with contacts, see find_bound().
-double2 bound_of(const Target* t, double mobility, Body body) {
+INLINE double2 bound_of(const Target* t, double mobility, Body body) {
   if ((t->stiffness == 0 && t->damping == 0) || mobility == 0) return 0;
   return (double2)(body.omega2 + mobility * t->stiffness, body.rate + mobility * t->damping);
 }
 
 // A target without forces.
-Target target_at(const Solids* p, int i, double3 x, global const double* predicted,
+INLINE Target target_at(const Solids* p, int i, double3 x, global const double* predicted,
                  global const double* spins, global const double* mass,
                  global const double* radius, global const int* body_of) {
   const double3 zero = 0;
@@ -357,10 +405,11 @@ Target target_at(const Solids* p, int i, double3 x, global const double* predict
 }
 
 // The forces in the order of particles, and the torques of friction. `loads` receives the loads of
-// the contacts, and `partial` the greatest bounds of free particles in groups.
+// the contacts, and `partial` the greatest bounds of free particles in groups. With `keeps_lists`,
+// the other columns receive the acting contacts and the directions of springs.
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_solid_forces(
     const Solids p, global const int* begins, global const int* order,
-    global const double4* sorted_position, global const double* position,
+    global const double* sorted, global const double* position,
     global const double* predicted, global const double* spins, global const double* mass,
     global const double* mobility, global const double* radius, global const int* body_of,
     global const Body* bodies, global const ContactLaw* laws,
@@ -368,14 +417,14 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_solid_forces
     global const uint* spring_begin, global const SpringEnd* springs,
     global const uint* cell_begin, global const uint2* corners, global const VolumeCell* cells,
     global const double* pressure, global double* force, global double* torque,
-    global double2* loads, global double2* partial) {
+    global double2* loads, global double2* partial, const int keeps_lists,
+    global int* contact_counts, global uint* contacts, global double* ways) {
   local double2 bounds[GROUP];
-  const int slot = get_global_id(0);
+  const int i = get_global_id(0);
   double2 own = 0;
-  if (slot < p.count) {
-    const int i = order[slot];
-    Target t =
-        target_at(&p, i, sorted_position[slot].xyz, predicted, spins, mass, radius, body_of);
+  if (i < p.count) {
+    Target t = target_at(&p, i, place_of_solid(&p, position, i), predicted, spins, mass, radius,
+                         body_of);
     const Body body = bodies[t.body];
     t.force = t.mass * (double3)(p.gravity[0], p.gravity[1], p.gravity[2]);
     if (p.field_strength > 0) {
@@ -384,18 +433,24 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_solid_forces
           (double3)(p.field_center[0], p.field_center[1], p.field_center[2]);
       t.force -= (t.mass * p.field_strength) * arm;
     }
+    int acting = 0;
     if (p.reach > 0) {
-      add_contacts(&p, begins, order, sorted_position, predicted, predicted, spins, spins, mass,
-                   radius, body_of, bodies, laws, exclusion_begin, exclusions, &t);
+      const ContactColumns columns = {begins, order, sorted, predicted, predicted, spins, spins, mass,
+                               radius, body_of, bodies, laws, exclusion_begin, exclusions};
+      const ContactLists lists = {keeps_lists, contact_counts, contacts};
+      acting = add_contacts(&p, &columns, &lists, &t);
     }
-    if (i < p.implicit) add_springs(&p, spring_begin, springs, position, predicted, &t);
+    if (i < p.implicit) {
+      add_springs(&p, spring_begin, springs, position, predicted, keeps_lists ? ways : 0, &t);
+    }
     if (i < p.free) {
       add_cells(&p, cell_begin, corners, cells, pressure, position, &t);
     }
     if (p.walls_push) {
       const int of_wall = p.materials * p.materials + p.materials + body.material;
-      add_walls(&p, laws[of_wall], &t);
+      if (add_walls(&p, laws[of_wall], &t)) acting |= WALLS_ACT;
     }
+    if (keeps_lists) contact_counts[i] = acting;
     store_vector(t.force, force, i);
     store_vector(t.torque, torque, i);
     loads[i] = (double2)(t.stiffness, t.damping);

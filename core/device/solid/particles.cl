@@ -66,8 +66,10 @@ double3 cross_product(double3 a, double3 b) {
 }
 
 int cell_of_solid(const Solids* p, double coordinate, int axis) {
-  const double cell = floor((coordinate - p->origin[axis]) * p->inverse_cell);
-  return convert_int_sat(clamp(cell, 0.0, (double)(p->cells[axis] - 1)));
+  const double cell = (coordinate - p->origin[axis]) * p->inverse_cell;
+  const int last = p->cells[axis] - 1;
+  // In this form, a NaN has cell 0.
+  return cell > 0 ? cell < last ? (int)cell : last : 0;
 }
 
 double wrapped_solid(const Solids* p, double coordinate, int axis) {
@@ -111,6 +113,64 @@ double wrapped_solid(const Solids* p, double coordinate, int axis) {
     }                                                                          \
     FOR_EACH_ROW_IN(p, low, high, begins, BODY)                                \
   })
+
+// The positions in the order of cells are three columns, and a fourth one has the indices of bodies.
+// After each column, a vector may follow.
+#define SORTED_END 8
+
+int sorted_stride(const Solids* p) {
+  return p->count + SORTED_END;
+}
+
+double3 sorted_at(const Solids* p, global const double* sorted, int slot) {
+  const int stride = sorted_stride(p);
+  return (double3)(sorted[slot], sorted[stride + slot], sorted[2 * stride + slot]);
+}
+
+// Runs BODY for each `slot` in [begin, end) whose particle is closer than sqrt(square) to the place `at`,
+// with the vector `shift` between periodic images. The body `untouched` has no such particles.
+#if LANES > 1
+// Bit l is set for such a slot block + l, with l < 8.
+INLINE uint bits_near(const Solids* p, global const double* sorted, int block, int end, double3 at,
+                      const double* shift, double square, double untouched) {
+  const int stride = sorted_stride(p);
+  global const double* row = sorted + block;
+  const double8 x = at.x - vload8(0, row) + shift[0];
+  const double8 y = at.y - vload8(0, row + stride) + shift[1];
+  const double8 z = at.z - vload8(0, row + 2 * stride) + shift[2];
+  const double8 body = vload8(0, row + 3 * stride);
+  const int8 is_inside = (int8)(0, 1, 2, 3, 4, 5, 6, 7) < end - block;
+  return byte_of(convert_char8(x * x + y * y + z * z < square && body != untouched) &
+                 convert_char8(is_inside));
+}
+#define FOR_EACH_NEAR(p, sorted, begin, end, at, shift, square, untouched, BODY) \
+  for (int block = begin; block < end; block += 8) {                           \
+    uint near = bits_near(p, sorted, block, end, at, shift, square, untouched); \
+    while (near != 0) {                                                        \
+      const int slot = block + 31 - clz(near & -near);                         \
+      near &= near - 1;                                                        \
+      BODY                                                                     \
+    }                                                                          \
+  }
+#else
+bool is_near_solid(const Solids* p, global const double* sorted, int slot, double3 at,
+                   const double* shift, double square, double untouched) {
+  if (sorted[3 * sorted_stride(p) + slot] == untouched) return false;
+  const double3 way = at - sorted_at(p, sorted, slot) + (double3)(shift[0], shift[1], shift[2]);
+  return product(way, way) < square;
+}
+#define FOR_EACH_NEAR(p, sorted, begin, end, at, shift, square, untouched, BODY) \
+  for (int slot = begin; slot < end; ++slot) {                                 \
+    if (!is_near_solid(p, sorted, slot, at, shift, square, untouched)) continue;     \
+    BODY                                                                       \
+  }
+#endif
+
+// The position of a particle in the box of a periodic world.
+double3 place_of_solid(const Solids* p, global const double* position, int i) {
+  return (double3)(wrapped_solid(p, position[3 * i], 0), wrapped_solid(p, position[3 * i + 1], 1),
+                   wrapped_solid(p, position[3 * i + 2], 2));
+}
 
 // Adds a particle to its cell.
 void enter_solid(const Solids* p, int i, const double* x, global int* cell_of, global int* rank,
@@ -250,13 +310,16 @@ kernel void finish_solids(const Solids p, global double* position, global double
 kernel void collect_solids(const Solids p, global const int* cell_of, global const int* begins,
                            global const int* unsorted, global const double* position,
                            global const int* body_of, global int* order,
-                           global double4* sorted_position) {
+                           global double* sorted) {
   const int t = get_global_id(0);
   if (t >= p.count) return;
   const int i = unsorted[t];
   const int slot = slot_in_cell(i, cell_of, begins, unsorted);
   order[slot] = i;
-  const double3 x = vector_at(position, i);
-  sorted_position[slot] = (double4)(wrapped_solid(&p, x.x, 0), wrapped_solid(&p, x.y, 1),
-                                    wrapped_solid(&p, x.z, 2), body_of[i]);
+  const double3 x = place_of_solid(&p, position, i);
+  const int stride = sorted_stride(&p);
+  sorted[slot] = x.x;
+  sorted[stride + slot] = x.y;
+  sorted[2 * stride + slot] = x.z;
+  sorted[3 * stride + slot] = body_of[i];
 }

@@ -235,7 +235,7 @@ void insert_contact(global Constraint* found, int count, int particle, int other
 // from `begins` on.
 kernel void find_projections(const Solids p, const ProjectionStep step, const int is_writing,
                              global const int* cell_begins, global const int* order,
-                             global const double4* sorted_position, global const double* mobility,
+                             global const double* sorted, global const double* mobility,
                              global const double* radius, global const int* body_of,
                              global const Body* bodies, global const ProjectedLaw* laws,
                              global const int* rigid_of, global const Rigid* rigid,
@@ -244,7 +244,7 @@ kernel void find_projections(const Solids p, const ProjectionStep step, const in
   const int slot = get_global_id(0);
   if (slot >= p.count) return;
   const int i = order[slot];
-  const double3 x = sorted_position[slot].xyz;
+  const double3 x = sorted_at(&p, sorted, slot);
   const double at[3] = {x.x, x.y, x.z};
   const int body = body_of[i];
   const int material = bodies[body].material;
@@ -272,7 +272,7 @@ kernel void find_projections(const Solids p, const ProjectionStep step, const in
         if (i < p.liquids && j < p.liquids && material == other) continue;
         const ProjectedLaw law = laws[material * p.materials + other];
         if (!law.is_projected) continue;
-        const double3 way = x - sorted_position[s].xyz + (double3)(shift[0], shift[1], shift[2]);
+        const double3 way = x - sorted_at(&p, sorted, s) + (double3)(shift[0], shift[1], shift[2]);
         const double threshold = law.threshold > 0 ? law.threshold : radius[i] + radius[j];
         if (sqrt(product(way, way)) > (1 + step.margin) * threshold) continue;
         if (!moves && !(mobility_of_solid(&p, j, mobility, rigid_of, rigid) > 0)) continue;

@@ -66,14 +66,23 @@ double4 orientation_of(const Pose* pose) {
   return normalized((double4)(q[0], q[1], q[2], q[3]));
 }
 
-// The sine and cosine for |x| <= 3, by their series. Built-in functions of devices differ.
+// 1 / (n (n + 1)) and 1 / (n (n - 1)) for n = 2, 4 ... 28.
+constant double kOfSine[] = {
+    1.0 / 6,   1.0 / 20,  1.0 / 42,  1.0 / 72,  1.0 / 110, 1.0 / 156, 1.0 / 210,
+    1.0 / 272, 1.0 / 342, 1.0 / 420, 1.0 / 506, 1.0 / 600, 1.0 / 702, 1.0 / 812};
+constant double kOfCosine[] = {
+    1.0 / 2,   1.0 / 12,  1.0 / 30,  1.0 / 56,  1.0 / 90,  1.0 / 132, 1.0 / 182,
+    1.0 / 240, 1.0 / 306, 1.0 / 380, 1.0 / 462, 1.0 / 552, 1.0 / 650, 1.0 / 756};
+
+// The sine and cosine for |x| <= 3, by their series. Built-in functions of devices differ. The terms
+// that small arguments do not need are below 10^-18.
 double2 sine_and_cosine(double x) {
   const double square = x * x;
   double sine = 1;
   double cosine = 1;
-  for (int n = 28; n >= 2; n -= 2) {
-    sine = 1 - square / (double)(n * (n + 1)) * sine;
-    cosine = 1 - square / (double)((n - 1) * n) * cosine;
+  for (int n = square < 4e-4 ? 2 : square < 0.25 ? 7 : 13; n >= 0; --n) {
+    sine = 1 - square * kOfSine[n] * sine;
+    cosine = 1 - square * kOfCosine[n] * cosine;
   }
   return (double2)(x * sine, cosine);
 }
@@ -248,31 +257,28 @@ typedef struct {
 } Resultant;
 
 // `torque` has additional torques on the particles, or is null.
-Resultant resultant_of(local double4* sums, const Rigid* body, double3 center,
-                       global const double* position, global const double* force,
+Resultant resultant_of(local double4* forces, local double4* torques, const Rigid* body,
+                       double3 center, global const double* position, global const double* force,
                        global const double* torque) {
   const int count = body->end - body->begin;
   const int first = LANES * get_local_id(0);
-  Resultant total;
-  for (int t = first; t < first + LANES; ++t) {
-    double4 own = 0;
-    for (int e = body->begin + t; e < body->end; e += GROUP) own.xyz += vector_at(force, e);
-    sums[t] = own;
-  }
-  COMBINE_SOME(sums, count, combined)
-  total.force = sums[0].xyz;
-  barrier(CLK_LOCAL_MEM_FENCE);
-  for (int t = first; t < first + LANES; ++t) {
-    double4 own = 0;
+  const int end = min(first + LANES, leaves_of_tree(count));
+  for (int t = first; t < end; ++t) {
+    double3 own_force = 0;
+    double3 own_torque = 0;
     for (int e = body->begin + t; e < body->end; e += GROUP) {
-      double3 about = cross_product(vector_at(position, e) - center, vector_at(force, e));
+      const double3 f = vector_at(force, e);
+      own_force += f;
+      double3 about = cross_product(vector_at(position, e) - center, f);
       if (torque != 0) about += vector_at(torque, e);
-      own.xyz += about;
+      own_torque += about;
     }
-    sums[t] = own;
+    forces[t] = (double4)(own_force, 0);
+    torques[t] = (double4)(own_torque, 0);
   }
-  COMBINE_SOME(sums, count, combined)
-  total.torque = sums[0].xyz;
+  COMBINE_SOME(forces, count, combined)
+  COMBINE_SOME(torques, count, combined)
+  const Resultant total = {forces[0].xyz, torques[0].xyz};
   barrier(CLK_LOCAL_MEM_FENCE);
   return total;
 }
@@ -295,13 +301,15 @@ kernel __attribute__((reqd_work_group_size(ITEMS, 1, 1))) void gather_rigid_forc
     global const double* torque, global const double2* loads, global double* rigid_force,
     global double2* bounds) {
   local double4 sums[GROUP];
+  local double4 torques[GROUP];
   const int b = get_group_id(0);
   const Rigid body = rigid[b];
   const Pose pose = poses[b];
   const double3 center = three(pose.center);
-  const Resultant total = resultant_of(sums, &body, center, position, force, torque);
+  const Resultant total = resultant_of(sums, torques, &body, center, position, force, torque);
   const int first = LANES * get_local_id(0);
-  for (int t = first; t < first + LANES; ++t) {
+  const int end = min(first + LANES, leaves_of_tree(body.end - body.begin));
+  for (int t = first; t < end; ++t) {
     double4 bound = 0;
     for (int e = body.begin + t; e < body.end; e += GROUP) {
       const double2 load = loads[e];

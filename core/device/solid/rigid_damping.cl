@@ -80,13 +80,14 @@ kernel __attribute__((reqd_work_group_size(ITEMS, 1, 1))) void multiply_damping_
     const Damping damping, const int first, const int groups, global const Rigid* rigid,
     global const Pose* poses, global const double* position, global const double* torque,
     global const double* direction, global double* multiplied, global double4* partial) {
-  local double4 sums[GROUP];
+  local double4 forces[GROUP];
+  local double4 torques[GROUP];
   const int b = get_group_id(0);
   const Rigid body = rigid[b];
   const Pose pose = poses[b];
   const int at = first + 2 * b;
   const Resultant q =
-      resultant_of(sums, &body, three(pose.center), position, multiplied, torque);
+      resultant_of(forces, torques, &body, three(pose.center), position, multiplied, torque);
   if (get_local_id(0) != 0) return;
   store_vector(q.force, multiplied, at);
   store_vector(q.torque, multiplied, at + 1);

@@ -81,7 +81,7 @@ bool acts(ContactLaw law) {
 // Adds the contacts with other particles, see look_at_pairs().
 void look_at_pairs(const Solids* p, const StepSearch* search, double approach,
                    global const int* begins, global const int* order,
-                   global const double4* sorted_position, global const double* velocity,
+                   global const double* sorted, global const double* velocity,
                    global const double* mass, global const double* mobility,
                    global const double* radius, global const int* body_of,
                    global const Body* bodies, global const ContactLaw* laws,
@@ -94,16 +94,14 @@ void look_at_pairs(const Solids* p, const StepSearch* search, double approach,
   const double radius_of_search = search->reach + approach;
   const double3 v = vector_at(velocity, i);
   FOR_EACH_ROW_OF_SOLIDS(p, at, radius_of_search, begins, {
-    for (int slot = begin; slot < end; ++slot) {
-      const double4 its = sorted_position[slot];
-      if (its.w == untouched) continue;
-      const double3 way = own - its.xyz;
-      const double3 x = way + (double3)(shift[0], shift[1], shift[2]);
-      const double square = product(x, x);
-      if (!(square < radius_of_search * radius_of_search)) continue;
+    FOR_EACH_NEAR(p, sorted, begin, end, own, shift, radius_of_search * radius_of_search,
+                  untouched, {
       const int j = order[slot];
       if (j == i) continue;
-      const int body = (int)its.w;
+      const double3 way = own - sorted_at(p, sorted, slot);
+      const double3 x = way + (double3)(shift[0], shift[1], shift[2]);
+      const double square = product(x, x);
+      const int body = body_of[j];
       const bool is_own = body == my_body;
       const ContactLaw law = laws[is_own ? p->materials * p->materials + mine.material
                                          : mine.material * p->materials + bodies[body].material];
@@ -121,7 +119,7 @@ void look_at_pairs(const Solids* p, const StepSearch* search, double approach,
           law.friction > 0 ? sqrt(law.stiffness * (mass[i] * mass[j] / (mass[i] + mass[j]))) : 0;
       add_prediction(law.stiffness, law.damping, sticking, 1 + sqrt(mobility[j] / mobility[i]),
                      threshold, time, n, r > 0 ? fabs(product(relative, n)) : speed, sum);
-    }
+    })
   })
 }
 
@@ -152,7 +150,7 @@ void look_at_walls(const Solids* p, const StepSearch* search, ContactLaw law, do
 // masses of contacts.
 kernel void predict_contacts(const Solids p, const StepSearch search,
                              global const double* approach, global const int* begins,
-                             global const int* order, global const double4* sorted_position,
+                             global const int* order, global const double* sorted,
                              global const double* velocity, global const double* mass,
                              global const double* mobility, global const double* radius,
                              global const int* body_of, global const Body* bodies,
@@ -167,9 +165,9 @@ kernel void predict_contacts(const Solids p, const StepSearch search,
   sum.time = sum.threshold = INFINITY;
   sum.speed = sum.padding = 0;
   if (mobility[i] > 0) {
-    const double3 own = sorted_position[slot].xyz;
+    const double3 own = sorted_at(&p, sorted, slot);
     if (search.reach > 0) {
-      look_at_pairs(&p, &search, *approach, begins, order, sorted_position, velocity, mass,
+      look_at_pairs(&p, &search, *approach, begins, order, sorted, velocity, mass,
                     mobility, radius, body_of, bodies, laws, exclusion_begin, exclusions, i, own,
                     &sum);
     }

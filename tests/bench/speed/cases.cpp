@@ -15,9 +15,19 @@ struct Size {
   bool is_long;
 };
 
+/// A pile of many bodies.
+struct Pile {
+  const char* name;  ///< number of particles
+  std::uint32_t bodies;
+  Real spacing;  ///< of particles [m]
+};
+
 void add_dam_breaks(std::vector<SpeedCase>& cases) {
-  constexpr Size kSizes[] = {
-      {"1k", 8, false}, {"10k", 17, false}, {"30k", 25, true}, {"100k", 37, true}};
+  constexpr Size kSizes[] = {{"1k", 8, false},
+                             {"10k", 17, false},
+                             {"30k", 25, true},
+                             {"100k", 37, true},
+                             {"300k", 53, true}};
   for (const PressureSolver solver : {PressureSolver::tait, PressureSolver::incompressible}) {
     for (const Size& size : kSizes) {
       cases.push_back({"dam-break-" + std::string(size.name) + '-' + to_string(solver),
@@ -45,6 +55,13 @@ void add_rigid_piles(std::vector<SpeedCase>& cases) {
     cases.push_back({"rigid-pile-200-" + std::string(to_string(law)),
                      [=] { return rigid_pile(200, law); },
                      {.warm_up = 0.6, .measured = 0.4}});
+  }
+  constexpr Pile kPiles[] = {{"30k", 1111, 0.04}, {"300k", 2600, 0.024}};
+  for (const Pile& pile : kPiles) {
+    cases.push_back({"rigid-pile-" + std::string(pile.name) + "-penalty",
+                     [=] { return rigid_pile(pile.bodies, InterfaceLaw::penalty, pile.spacing); },
+                     {.warm_up = 0.3, .measured = 0.05},
+                     true});
   }
   cases.push_back({"rigid-rest-200",
                    [] { return rigid_pile(200, InterfaceLaw::projection); },
@@ -74,6 +91,13 @@ std::vector<SpeedCase> all_speed_cases(const std::string& scenes_folder) {
   add_rigid_piles(cases);
   cases.push_back(
       {"deformable-50", [] { return deformable_pile(50); }, {.warm_up = 0.6, .measured = 0.4}});
+  constexpr Pile kPiles[] = {{"30k", 469, 0.04}, {"300k", 2400, 0.032}};
+  for (const Pile& pile : kPiles) {
+    cases.push_back({"deformable-" + std::string(pile.name),
+                     [=] { return deformable_pile(pile.bodies, pile.spacing); },
+                     {.warm_up = 0.3, .measured = 0.05},
+                     true});
+  }
   for (const PressureSolver solver : {PressureSolver::tait, PressureSolver::incompressible}) {
     cases.push_back({std::string("pool-10k-") + to_string(solver),
                      [=] { return pool(solver); },

@@ -77,13 +77,29 @@ Quat turn_of(std::uint32_t n) {
   return Quat(0.6, part(367), part(521), part(613)).normalized();
 }
 
-/// Returns the position of body n in layers of 5 x 5, 0.2 m apart. The lowest layer is at `height`
-/// [m].
-Vec3 place_of(std::uint32_t n, Real height) {
-  const std::uint32_t row = n / 5;
-  const std::uint32_t layer = n / 25;
-  return Vec3(0.2, 0.2, height) + 0.2 * Vec3(n % 5, row % 5, layer);
-}
+/// A pile of bodies in a vat, 0.2 m apart, about as high as wide.
+class PileShape {
+ public:
+  explicit PileShape(std::uint32_t bodies)
+      : width_(std::max(5U, static_cast<std::uint32_t>(std::lround(0.8 * std::cbrt(bodies))))),
+        layers_((bodies - 1) / (width_ * width_) + 1) {}
+
+  /// Returns the place of body n. The lowest layer is at `height` [m].
+  Vec3 place_of(std::uint32_t n, Real height) const {
+    const std::uint32_t row = n / width_;
+    const std::uint32_t layer = row / width_;
+    return Vec3(0.2, 0.2, height) + 0.2 * Vec3(n % width_, row % width_, layer);
+  }
+  /// Returns a vat that is `height` [m] high for up to 200 bodies.
+  Vat vat(Real height) const {
+    const Real width = 0.2 * (width_ + 1);
+    return closed_vat({0, 0, 0}, {width, width, std::max(height, 0.2 * (layers_ + 2))});
+  }
+
+ private:
+  std::uint32_t width_;  ///< bodies per row
+  std::uint32_t layers_;
+};
 
 }  // namespace
 
@@ -135,8 +151,7 @@ Scene pool(PressureSolver solver) {
   return scene;
 }
 
-Scene rigid_pile(std::uint32_t bodies, InterfaceLaw law) {
-  constexpr Real kSpacing = 0.04;
+Scene rigid_pile(std::uint32_t bodies, InterfaceLaw law, Real spacing) {
   Scene scene;
   scene.materials.emplace_back().name = "wood";
   scene.materials.back().density = 600;
@@ -144,14 +159,17 @@ Scene rigid_pile(std::uint32_t bodies, InterfaceLaw law) {
     scene.default_interface = {.friction = 0.4, .law = law};
     scene.numerics.step = kLongestStep;
   } else {
-    scene.default_interface = {.stiffness = 8000, .damping = 20, .friction = 0.4};
+    // Smaller particles need stiffer contacts, so that none passes through a wall.
+    const Real stiffness = 8000 * std::pow(0.04 / spacing, 3);
+    scene.default_interface = {.stiffness = stiffness, .damping = 20, .friction = 0.4};
   }
-  scene.vat = closed_vat({0, 0, 0}, {1.2, 1.2, 3});
+  const PileShape pile(bodies);
+  scene.vat = pile.vat(3);
   scene.numerics.tick = kTick;
   for (std::uint32_t n = 0; n < bodies; ++n) {
-    const Vec3 center = place_of(n, 0.15);
-    BodyDescription body = box_of("body " + std::to_string(n + 1), BodyKind::rigid, "wood",
-                                  kSpacing, center, {0.12, 0.12, 0.12});
+    const Vec3 center = pile.place_of(n, 0.15);
+    BodyDescription body = box_of("body " + std::to_string(n + 1), BodyKind::rigid, "wood", spacing,
+                                  center, {0.12, 0.12, 0.12});
     if (n % 2 == 1) body.shape = SphereShape{Vec3::Zero(), 0.07};
     body.orientation = turn_of(n);
     scene.bodies.push_back(std::move(body));
@@ -159,8 +177,7 @@ Scene rigid_pile(std::uint32_t bodies, InterfaceLaw law) {
   return scene;
 }
 
-Scene deformable_pile(std::uint32_t bodies) {
-  constexpr Real kSpacing = 0.04;
+Scene deformable_pile(std::uint32_t bodies, Real spacing) {
   Scene scene;
   Material& jelly = scene.materials.emplace_back();
   jelly.name = "jelly";
@@ -169,12 +186,13 @@ Scene deformable_pile(std::uint32_t bodies) {
       LatticeSprings{SpringConstants{1500, 2}, SpringConstants{750, 1}, SpringConstants{300, 0.5}};
   jelly.self_contact = SpringConstants{2000, 2};
   scene.default_interface = {.stiffness = 5000, .damping = 5, .friction = 0.2};
-  scene.vat = closed_vat({0, 0, 0}, {1.2, 1.2, 2});
+  const PileShape pile(bodies);
+  scene.vat = pile.vat(2);
   scene.numerics.tick = kTick;
   for (std::uint32_t n = 0; n < bodies; ++n) {
-    const Vec3 center = place_of(n, 0.2);
+    const Vec3 center = pile.place_of(n, 0.2);
     BodyDescription body = box_of("block " + std::to_string(n + 1), BodyKind::deformable, "jelly",
-                                  kSpacing, center, {0.16, 0.16, 0.16});
+                                  spacing, center, {0.16, 0.16, 0.16});
     body.orientation = turn_of(n);
     scene.bodies.push_back(std::move(body));
   }

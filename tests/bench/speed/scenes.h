@@ -20,10 +20,10 @@ Scene peer_dam_break(int edge, PressureSolver solver);
 Scene pool(PressureSolver solver);
 
 /// Rigid blocks and balls that fall into a heap, with penalty contacts, in which they creep, or
-/// projection contacts, in which they come to rest.
-Scene rigid_pile(std::uint32_t bodies, InterfaceLaw law);
+/// projection contacts, in which they come to rest. `spacing` is that of particles [m].
+Scene rigid_pile(std::uint32_t bodies, InterfaceLaw law, Real spacing = 0.04);
 
-/// Blocks of jelly that fall on one another.
-Scene deformable_pile(std::uint32_t bodies);
+/// Blocks of jelly that fall on one another. `spacing` is that of particles [m].
+Scene deformable_pile(std::uint32_t bodies, Real spacing = 0.04);
 
 }  // namespace vat::bench
