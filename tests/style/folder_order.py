@@ -22,7 +22,7 @@ FOLDER_ORDER = (
     # the step, and the simulation
     "core/stepping/control", "core/stepping", "core/sleep", "core/saved", "core/simulation", "core/coupling",
     # steps on other devices
-    "core/device/opencl", "core/device/common", "core/device/liquid", "core/device/solid", "core/device/gas",
+    "core/device/opencl", "core/device/common", "core/device/contact", "core/device/liquid", "core/device/solid", "core/device/gas",
     "core/device/tait", "core/device/incompressible", "core/device",
     "protocol/json", "protocol/files", "protocol/scene", "protocol/convert", "protocol/tune", "protocol/published", "protocol/frame",
     "protocol/messages", "protocol/recording", "protocol/python/native",

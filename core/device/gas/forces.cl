@@ -24,14 +24,12 @@ typedef struct {
 // the same material as `i`. `way` is the vector from j to i, and `square` the square of its length.
 #define FOR_EACH_GAS_NEIGHBOUR(BODY)                                           \
   {                                                                            \
-    const double place[3] = {at.x, at.y, at.z};                                \
-    FOR_EACH_ROW_OF_SOLIDS(&p, place, support, begins, {                       \
+    FOR_EACH_ROW_OF_SOLIDS(&p, at, support, begins, {                       \
       FOR_EACH_NEAR(&p, sorted, begin, end, at, shift, support * support, -1, { \
         const int j = order[slot];                                             \
         if (j == i || j >= p.liquids) continue;                                \
         if (bodies[body_of[j]].material != material) continue;                 \
-        const double3 across = (double3)(shift[0], shift[1], shift[2]);        \
-        const double3 way = at - sorted_at(&p, sorted, slot) + across;         \
+        const double3 way = at - sorted_at(&p, sorted, slot) + shift;          \
         const double square = product(way, way);                               \
         BODY                                                                   \
       })                                                                       \

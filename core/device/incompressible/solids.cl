@@ -99,7 +99,7 @@ kernel __attribute__((reqd_work_group_size(ITEMS, 1, 1))) void accelerate_of_bod
   const int b = get_group_id(0);
   const Rigid body = rigid[b];
   const Pose pose = poses[b];
-  const Resultant all = resultant_of(sums, torques, &body, three(pose.center), position, push, 0);
+  const Resultant all = resultant_of(sums, torques, &body, three(pose.center), position, push, 0, 0);
   if (get_local_id(0) != 0) return;
   const double3 force = body.is_held ? (double3)(0) : all.force;
   const double3 torque = body.is_held ? (double3)(0) : all.torque;

@@ -90,7 +90,8 @@ INLINE void add_dampers(global const uint* begins, global const SpringEnd* ends,
 }
 
 // Computes D times the direction, and <d, (M - dt D) d> of free particles. Uses the contacts and the
-// directions of springs of find_solid_forces().
+// directions of springs of find_solid_forces(). A particle of a rigid body without acting contacts has
+// no product.
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multiply_damping(
     const Solids p, const Damping damping, global const DampingProgress* progress,
     global const int* begins, global const int* order, global const double* sorted,
@@ -135,9 +136,6 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multiply_damping(
     store_vector(t.force, multiplied, i);
     store_vector(t.torque, torque, i);
     if (i < p.free) own.x = product(t.w, t.mass * t.w - damping.dt * t.force);
-  } else if (i < p.count) {
-    store_vector((double3)(0), multiplied, i);
-    store_vector((double3)(0), torque, i);
   }
   write_partial(sums, own, partial);
 }

@@ -125,7 +125,7 @@ void DeviceDamping::iterate(const SolidParameters& p, const DampingParameters& d
     program_.run("turn_damping_of_bodies", bodies_, bodies, first, progress_, r.rigid, r.poses,
                  residual_, direction_, spin_change_);
     program_.run("pose_damping", count_ - free_, p, progress_, r.rigid_of, r.poses, solids.position,
-                 direction_);
+                 memory.contact_counts, direction_);
   }
   program_.run("multiply_damping", count_, p, damping, progress_, solids.cells.begins, solids.order,
                solids.sorted, solids.position, solids.predicted, direction_, r.spins, spin_change_,
@@ -135,7 +135,7 @@ void DeviceDamping::iterate(const SolidParameters& p, const DampingParameters& d
   if (bodies_ > 0) {
     program_.run_in_lanes("multiply_damping_of_bodies", bodies_ * kOne, damping, first,
                           groups_of(count_), r.rigid, r.poses, solids.position, torque_, direction_,
-                          multiplied_, partial_);
+                          memory.contact_counts, multiplied_, partial_);
   }
   program_.run("find_damping_length", kOne, groups_of(count_) + bodies, partial_, progress_);
   if (free_ > 0) {

@@ -58,6 +58,7 @@ DeviceSolids::DeviceSolids(Program& program, const Model& model, const GuardBoun
       order_(program, range_.count * sizeof(std::int32_t)),
       sorted_(program, (range_.count + kSortedEnd) * kVector4),
       memory_(program, model),
+      near_bodies_(program, model, range_.free),
       pressure_(program, std::max<std::size_t>(1, model.cells.size()) * sizeof(double)),
       partial_(program, groups_of_solids(model) * sizeof(Bound)),
       bounds_of_bodies_(program,
@@ -77,6 +78,7 @@ std::size_t DeviceSolids::bytes_for(const Model& model) {
   return SolidTables::bytes_for(model) + DeviceCells::bytes_for(n, geometry.cell_count()) +
          n * (2 * DeviceMotion::kBytes + 3 * kVector + kVector4 + sizeof(std::int32_t)) +
          kSortedEnd * kVector4 + RememberedForces::bytes_for(model) +
+         DeviceNearBodies::bytes_for(model, SolidRange(model).free) +
          model.cells.size() * sizeof(double) +
          (groups_of_solids(model) + model.rigid_bodies.size() + 1) * sizeof(Bound) +
          DeviceRigidBodies::bytes_for(model) + DeviceDamping::bytes_for(model) +
@@ -291,11 +293,14 @@ void DeviceSolids::divide_kicks(SolidParameters& p, Real time, Real step,
 
 void DeviceSolids::find_forces(Real end) {
   const SolidTables& t = tables_;
+  near_bodies_.find(rigid_.rigid, rigid_.poses);
   program_.run("find_solid_forces", range_.count, parameters(end), cells_.begins, order_, sorted_,
                motion_.position, predicted_, rigid_.spins, t.mass, t.mobility, t.radius, t.body_of,
                t.bodies, t.laws, t.exclusion_begin, t.exclusions, t.spring_begin, t.springs,
                t.corner_begin, t.corners, t.cells, pressure_, force_, rigid_.torque, rigid_.loads,
-               partial_, memory_.is_used, memory_.contact_counts, memory_.contacts, memory_.ways);
+               partial_, memory_.is_used, memory_.contact_counts, memory_.contacts, memory_.ways,
+               near_bodies_.search(), rigid_.rigid_of, near_bodies_.spheres, near_bodies_.counts,
+               near_bodies_.near);
 }
 
 void DeviceSolids::gather() {

@@ -8,6 +8,7 @@
 #include "core/device/common/device_cells.h"
 #include "core/device/common/device_counters.h"
 #include "core/device/common/device_motion.h"
+#include "core/device/contact/device_near_bodies.h"
 #include "core/device/liquid/device_particles.h"
 #include "core/device/opencl/program.h"
 #include "core/device/solid/device_damping.h"
@@ -183,6 +184,7 @@ class DeviceSolids {
   opencl::Buffer predicted_;  ///< velocities in forces
   opencl::Buffer order_, sorted_;
   const RememberedForces memory_;
+  DeviceNearBodies near_bodies_;
   opencl::Buffer pressure_;                               ///< by cell of deformable bodies
   opencl::Buffer partial_, bounds_of_bodies_, greatest_;  ///< bounds of groups, rigid bodies, all
   DeviceDamping damping_;

@@ -187,10 +187,9 @@ typedef struct {
 #define WALLS_ACT 0x100000
 
 // The number of an image from 0 to 26, and the shift to it.
-INLINE uint image_of(const Solids* p, const double* shift) {
-  uint image = 0;
-  for (int k = 0; k < 3; ++k) image = 3 * image + (shift[k] < 0 ? 0 : shift[k] > 0 ? 2 : 1);
-  return image;
+INLINE uint image_of(double3 shift) {
+  const long3 signs = (shift < 0) - (shift > 0);
+  return 13 + 9 * signs.x + 3 * signs.y + signs.z;
 }
 
 INLINE double3 shift_to(const Solids* p, uint image) {
@@ -224,15 +223,13 @@ INLINE bool add_contact_at(const Solids* p, const ContactColumns* c, int slot, d
 
 // Adds the contacts with the particles in the cells around the target. Returns their number.
 INLINE int add_contacts(const Solids* p, const ContactColumns* c, const ContactLists* lists, Target* t) {
-  const double at[3] = {t->x.x, t->x.y, t->x.z};
   const double untouched = c->bodies[t->body].touches_itself ? -1 : t->body;
   int count = 0;
-  FOR_EACH_ROW_OF_SOLIDS(p, at, p->reach, c->begins, {
-    const double3 to_image = (double3)(shift[0], shift[1], shift[2]);
+  FOR_EACH_ROW_OF_SOLIDS(p, t->x, p->reach, c->begins, {
     FOR_EACH_NEAR(p, c->sorted, begin, end, t->x, shift, p->reach * p->reach, untouched, {
-      if (!add_contact_at(p, c, slot, to_image, t)) continue;
+      if (!add_contact_at(p, c, slot, shift, t)) continue;
       if (lists->is_kept && count < MOST_CONTACTS) {
-        lists->near[count * p->count + t->index] = slot | image_of(p, shift) << IMAGE_BIT;
+        lists->near[count * p->count + t->index] = slot | image_of(shift) << IMAGE_BIT;
       }
       ++count;
     })
@@ -418,7 +415,9 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_solid_forces
     global const uint* cell_begin, global const uint2* corners, global const VolumeCell* cells,
     global const double* pressure, global double* force, global double* torque,
     global double2* loads, global double2* partial, const int keeps_lists,
-    global int* contact_counts, global uint* contacts, global double* ways) {
+    global int* contact_counts, global uint* contacts, global double* ways,
+    const NearSearch search, global const int* rigid_of, global const double* spheres,
+    global const int* near_counts, global const int* near_bodies) {
   local double2 bounds[GROUP];
   const int i = get_global_id(0);
   double2 own = 0;
@@ -434,7 +433,8 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_solid_forces
       t.force -= (t.mass * p.field_strength) * arm;
     }
     int acting = 0;
-    if (p.reach > 0) {
+    const NearBodies near = {spheres, near_counts, near_bodies};
+    if (p.reach > 0 && (!search.is_used || may_touch(&search, &near, rigid_of[i], t.x))) {
       const ContactColumns columns = {begins, order, sorted, predicted, predicted, spins, spins, mass,
                                radius, body_of, bodies, laws, exclusion_begin, exclusions};
       const ContactLists lists = {keeps_lists, contact_counts, contacts};

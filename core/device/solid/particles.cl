@@ -76,43 +76,44 @@ double wrapped_solid(const Solids* p, double coordinate, int axis) {
   return wrapped(coordinate, p->origin[axis], p->period[axis]);
 }
 
-// Runs BODY for each `shift` between periodic images that may bring particles within `radius` of the
-// place `at`: also for no shift. The vector from a particle to its neighbour includes the shift.
-#define FOR_EACH_SHIFT(p, at, radius, BODY)                                    \
+// The images of a world along an axis that may be within `radius` of a coordinate: the first and the
+// last of -1, 0, 1.
+INLINE int2 images_near(const Solids* p, double coordinate, double radius, int axis) {
+  if (!(p->period[axis] > 0)) return 0;
+  const double from_low = coordinate - p->origin[axis];
+  const double margin = radius * (1 + 1e-6);  // above rounding errors
+  return (int2)(p->period[axis] - from_low <= margin ? -1 : 0, from_low <= margin ? 1 : 0);
+}
+
+// The first and the last cell within `radius` of a coordinate.
+INLINE int2 cells_of_solids(const Solids* p, double coordinate, double radius, int axis) {
+  return (int2)(cell_of_solid(p, coordinate - radius, axis),
+                cell_of_solid(p, coordinate + radius, axis));
+}
+
+// Runs BODY for each row of cells within `radius` of the place `at`, with the slots [begin, end). `shift`
+// is the vector between periodic images. BODY adds it to vectors from the particles of these slots.
+#define FOR_EACH_ROW_OF_SOLIDS(p, at, radius, begins, BODY)                    \
   {                                                                            \
-    int first[3];                                                              \
-    int last[3];                                                               \
-    for (int k = 0; k < 3; ++k) {                                              \
-      const double from_low = at[k] - (p)->origin[k];                          \
-      const bool repeats = (p)->period[k] > 0;                                 \
-      const double margin = (radius) * (1 + 1e-6); /* above rounding errors */ \
-      first[k] = repeats && (p)->period[k] - from_low <= margin ? -1 : 0;      \
-      last[k] = repeats && from_low <= margin ? 1 : 0;                         \
-    }                                                                          \
-    for (int image_z = first[2]; image_z <= last[2]; ++image_z) {              \
-      for (int image_y = first[1]; image_y <= last[1]; ++image_y) {            \
-        for (int image_x = first[0]; image_x <= last[0]; ++image_x) {          \
-          const double shift[3] = {image_x * (p)->period[0],                   \
-                                   image_y * (p)->period[1],                   \
-                                   image_z * (p)->period[2]};                  \
-          BODY                                                                 \
+    const int2 images_x = images_near(p, (at).x, radius, 0);                   \
+    const int2 images_y = images_near(p, (at).y, radius, 1);                   \
+    const int2 images_z = images_near(p, (at).z, radius, 2);                   \
+    for (int image_z = images_z.x; image_z <= images_z.y; ++image_z) {         \
+      for (int image_y = images_y.x; image_y <= images_y.y; ++image_y) {       \
+        for (int image_x = images_x.x; image_x <= images_x.y; ++image_x) {     \
+          const double3 shift =                                                \
+              (double3)(image_x * (p)->period[0], image_y * (p)->period[1],    \
+                        image_z * (p)->period[2]);                             \
+          const int2 along_x = cells_of_solids(p, (at).x + shift.x, radius, 0); \
+          const int2 along_y = cells_of_solids(p, (at).y + shift.y, radius, 1); \
+          const int2 along_z = cells_of_solids(p, (at).z + shift.z, radius, 2); \
+          const int low[3] = {along_x.x, along_y.x, along_z.x};                \
+          const int high[3] = {along_x.y, along_y.y, along_z.y};               \
+          FOR_EACH_ROW_IN(p, low, high, begins, BODY)                          \
         }                                                                      \
       }                                                                        \
     }                                                                          \
   }
-
-// Runs BODY for each row of cells within `radius` of the place `at`, with the slots [begin, end).
-// BODY adds `shift` to vectors from the particles of these slots.
-#define FOR_EACH_ROW_OF_SOLIDS(p, at, radius, begins, BODY)                    \
-  FOR_EACH_SHIFT(p, at, radius, {                                              \
-    int low[3];                                                                \
-    int high[3];                                                               \
-    for (int k = 0; k < 3; ++k) {                                              \
-      low[k] = cell_of_solid(p, at[k] + shift[k] - (radius), k);               \
-      high[k] = cell_of_solid(p, at[k] + shift[k] + (radius), k);              \
-    }                                                                          \
-    FOR_EACH_ROW_IN(p, low, high, begins, BODY)                                \
-  })
 
 // The positions in the order of cells are three columns, and a fourth one has the indices of bodies.
 // After each column, a vector may follow.
@@ -132,12 +133,12 @@ double3 sorted_at(const Solids* p, global const double* sorted, int slot) {
 #if LANES > 1
 // Bit l is set for such a slot block + l, with l < 8.
 INLINE uint bits_near(const Solids* p, global const double* sorted, int block, int end, double3 at,
-                      const double* shift, double square, double untouched) {
+                      double3 shift, double square, double untouched) {
   const int stride = sorted_stride(p);
   global const double* row = sorted + block;
-  const double8 x = at.x - vload8(0, row) + shift[0];
-  const double8 y = at.y - vload8(0, row + stride) + shift[1];
-  const double8 z = at.z - vload8(0, row + 2 * stride) + shift[2];
+  const double8 x = at.x - vload8(0, row) + shift.x;
+  const double8 y = at.y - vload8(0, row + stride) + shift.y;
+  const double8 z = at.z - vload8(0, row + 2 * stride) + shift.z;
   const double8 body = vload8(0, row + 3 * stride);
   const int8 is_inside = (int8)(0, 1, 2, 3, 4, 5, 6, 7) < end - block;
   return byte_of(convert_char8(x * x + y * y + z * z < square && body != untouched) &
@@ -154,9 +155,9 @@ INLINE uint bits_near(const Solids* p, global const double* sorted, int block, i
   }
 #else
 bool is_near_solid(const Solids* p, global const double* sorted, int slot, double3 at,
-                   const double* shift, double square, double untouched) {
+                   double3 shift, double square, double untouched) {
   if (sorted[3 * sorted_stride(p) + slot] == untouched) return false;
-  const double3 way = at - sorted_at(p, sorted, slot) + (double3)(shift[0], shift[1], shift[2]);
+  const double3 way = at - sorted_at(p, sorted, slot) + shift;
   return product(way, way) < square;
 }
 #define FOR_EACH_NEAR(p, sorted, begin, end, at, shift, square, untouched, BODY) \

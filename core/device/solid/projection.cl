@@ -245,7 +245,6 @@ kernel void find_projections(const Solids p, const ProjectionStep step, const in
   if (slot >= p.count) return;
   const int i = order[slot];
   const double3 x = sorted_at(&p, sorted, slot);
-  const double at[3] = {x.x, x.y, x.z};
   const int body = body_of[i];
   const int material = bodies[body].material;
   const bool moves = mobility_of_solid(&p, i, mobility, rigid_of, rigid) > 0;
@@ -264,7 +263,7 @@ kernel void find_projections(const Solids p, const ProjectionStep step, const in
   }
   const double reach = (1 + step.margin) * step.reach;
   if (step.reach > 0) {
-    FOR_EACH_ROW_OF_SOLIDS(&p, at, reach, cell_begins, {
+    FOR_EACH_ROW_OF_SOLIDS(&p, x, reach, cell_begins, {
       for (int s = begin; s < end; ++s) {
         const int j = order[s];
         if (j <= i || body_of[j] == body) continue;
@@ -272,7 +271,7 @@ kernel void find_projections(const Solids p, const ProjectionStep step, const in
         if (i < p.liquids && j < p.liquids && material == other) continue;
         const ProjectedLaw law = laws[material * p.materials + other];
         if (!law.is_projected) continue;
-        const double3 way = x - sorted_at(&p, sorted, s) + (double3)(shift[0], shift[1], shift[2]);
+        const double3 way = x - sorted_at(&p, sorted, s) + shift;
         const double threshold = law.threshold > 0 ? law.threshold : radius[i] + radius[j];
         if (sqrt(product(way, way)) > (1 + step.margin) * threshold) continue;
         if (!moves && !(mobility_of_solid(&p, j, mobility, rigid_of, rigid) > 0)) continue;

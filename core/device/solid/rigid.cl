@@ -256,10 +256,11 @@ typedef struct {
   double3 torque;
 } Resultant;
 
-// `torque` has additional torques on the particles, or is null.
+// `torque` has additional torques on the particles, or is null. If `acting` is not null, particles
+// for which it is 0 have no force.
 Resultant resultant_of(local double4* forces, local double4* torques, const Rigid* body,
                        double3 center, global const double* position, global const double* force,
-                       global const double* torque) {
+                       global const double* torque, global const int* acting) {
   const int count = body->end - body->begin;
   const int first = LANES * get_local_id(0);
   const int end = min(first + LANES, leaves_of_tree(count));
@@ -267,6 +268,7 @@ Resultant resultant_of(local double4* forces, local double4* torques, const Rigi
     double3 own_force = 0;
     double3 own_torque = 0;
     for (int e = body->begin + t; e < body->end; e += GROUP) {
+      if (acting != 0 && acting[e] == 0) continue;
       const double3 f = vector_at(force, e);
       own_force += f;
       double3 about = cross_product(vector_at(position, e) - center, f);
@@ -306,7 +308,7 @@ kernel __attribute__((reqd_work_group_size(ITEMS, 1, 1))) void gather_rigid_forc
   const Rigid body = rigid[b];
   const Pose pose = poses[b];
   const double3 center = three(pose.center);
-  const Resultant total = resultant_of(sums, torques, &body, center, position, force, torque);
+  const Resultant total = resultant_of(sums, torques, &body, center, position, force, torque, 0);
   const int first = LANES * get_local_id(0);
   const int end = min(first + LANES, leaves_of_tree(body.end - body.begin));
   for (int t = first; t < end; ++t) {

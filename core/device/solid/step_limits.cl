@@ -87,19 +87,18 @@ void look_at_pairs(const Solids* p, const StepSearch* search, double approach,
                    global const Body* bodies, global const ContactLaw* laws,
                    global const uint* exclusion_begin, global const uint* exclusions, int i,
                    double3 own, Prediction* sum) {
-  const double at[3] = {own.x, own.y, own.z};
   const int my_body = body_of[i];
   const Body mine = bodies[my_body];
   const double untouched = mine.touches_itself ? -1 : my_body;
   const double radius_of_search = search->reach + approach;
   const double3 v = vector_at(velocity, i);
-  FOR_EACH_ROW_OF_SOLIDS(p, at, radius_of_search, begins, {
+  FOR_EACH_ROW_OF_SOLIDS(p, own, radius_of_search, begins, {
     FOR_EACH_NEAR(p, sorted, begin, end, own, shift, radius_of_search * radius_of_search,
                   untouched, {
       const int j = order[slot];
       if (j == i) continue;
       const double3 way = own - sorted_at(p, sorted, slot);
-      const double3 x = way + (double3)(shift[0], shift[1], shift[2]);
+      const double3 x = way + shift;
       const double square = product(x, x);
       const int body = body_of[j];
       const bool is_own = body == my_body;

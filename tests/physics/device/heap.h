@@ -38,6 +38,21 @@ inline Scene make_heap() {
   return scene;
 }
 
+/// Puts 30 small bodies on the plate, more than a device lists as near it.
+inline void add_small_bodies(Scene& scene) {
+  scene.vat->max.z() = 1;
+  scene.bodies[1].position.z() = 0.5;
+  scene.bodies[2].position.z() = 0.8;
+  for (int n = 0; n < 30; ++n) {
+    BodyDescription body =
+        make_body("small " + std::to_string(n), BodyKind::rigid, "wood",
+                  make_particles({{0, 0, 0}, {0, 0, 0.03}}, 0.02), kHeapSpacing / 2);
+    body.position = {0.06 + 0.045 * (n % 5), 0.1 + 0.045 * (n / 5), 0.155};
+    body.velocity = {-1, 0, -1.5};
+    scene.bodies.push_back(std::move(body));
+  }
+}
+
 /// Adds a deformable body beside the heap.
 inline void add_jelly(Scene& scene) {
   scene.materials.push_back(make_material("jelly", 400));

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "core/device/device_engine.h"
+#include "tests/physics/device/heap.h"
 #include "tests/physics/device/on_device.h"
 #include "tests/support/scenes.h"
 
@@ -121,6 +122,12 @@ TEST(LanesOfDevices, DoNotChangeTheBitsOfBodies) {
   const std::uint64_t alone = hash_with_lanes(scene, opencl::kMostLanes);
   EXPECT_EQ(alone, hash_with_lanes(scene, 1));
   EXPECT_NE(alone, in_liquid);
+}
+
+TEST(LanesOfDevices, DoNotChangeTheBitsOfRigidBodies) {
+  Scene scene = make_heap();
+  add_small_bodies(scene);
+  EXPECT_EQ(hash_with_lanes(scene, opencl::kMostLanes), hash_with_lanes(scene, 1));
 }
 
 TEST(LanesOfDevices, DoNotChangeTheBitsOfBodiesInIncompressibleLiquids) {

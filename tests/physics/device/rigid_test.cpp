@@ -33,6 +33,7 @@ const SceneCase kScenes[] = {
        scene.vat->walls[4].velocity = {1, 0.5, 0};
        scene.vat->motion = SlideMotion{Vec3(1, 0, 0.5).normalized(), 0.05, 0.4};
      }},
+    {"a body near more others than a list has", add_small_bodies},
     {"with a deformable body", add_jelly},
     {"with a deformable body and friction",
      [](Scene& scene) {
