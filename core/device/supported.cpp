@@ -80,11 +80,12 @@ void Missing::check_body(std::size_t index) {
   if (body.kind != BodyKind::rigid) return;
   reject(body.motion.has_value() && !body.angular_velocity.isZero(0), path + "/angular_velocity",
          "must be 0 for a driven body");
-  reject(body.axle && (is_incompressible() || model_.has_projection ||
-                       scene_.numerics.integrator != IntegratorId::velocity_verlet),
-         path + "/axle",
-         "must be absent with incompressible liquids, contacts by projection, and integrators other "
-         "than velocity_verlet");
+  reject(
+      body.axle && (is_incompressible() || model_.has_projection ||
+                    scene_.numerics.integrator != IntegratorId::velocity_verlet),
+      path + "/axle",
+      "must be absent with incompressible liquids, contacts by projection, and integrators other "
+      "than velocity_verlet");
   if (!body.fixed && body.release == 0) return;
   reject(!body.velocity.isZero(0), path + "/velocity", "must be 0 for a fixed or held body");
   reject(!body.angular_velocity.isZero(0), path + "/angular_velocity",
@@ -127,9 +128,7 @@ void Missing::check_liquid() {
          "must be fixed in a scene with bodies that can move");
   reject(is_adaptive && model_.free_count > model_.liquid_count, "/numerics/control",
          "must be fixed in a scene with deformable bodies");
-  const bool is_explicit =
-      solids_move(model_) || (is_incompressible() && control == StepControl::adaptive);
-  reject(is_explicit && may_solve_viscosity(model_), "/numerics/step",
+  reject(solids_move(model_) && may_solve_viscosity(model_), "/numerics/step",
          "must resolve the viscosity of the liquid and the damping of bodies");
   reject(is_incompressible() && model_.has_surface_tension, "/materials",
          "must have no surface tension with the pressure solver incompressible");

@@ -19,6 +19,7 @@
 #include "tests/bench/kernels/kernels.h"
 #include "tests/bench/output/output.h"
 #include "tests/bench/race/race.h"
+#include "tests/bench/rounding/rounding.h"
 #include "tests/bench/seeks.h"
 #include "tests/bench/soak/soak.h"
 #include "tests/bench/speed/speed.h"
@@ -42,6 +43,7 @@ int run_command(int argc, char** argv) {
   add_instructions_command(app, exit_code);
   add_kernels_command(app, exit_code);
   add_validate_command(app, exit_code);
+  add_rounding_command(app, exit_code);
   add_accuracy_command(app, exit_code);
   add_stability_command(app, exit_code);
   add_tune_bench_command(app, exit_code);

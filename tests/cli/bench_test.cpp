@@ -104,6 +104,20 @@ TEST(BenchValidate, TableIsWrittenThreeTimes) {
   EXPECT_THAT(read_file(folder.file("results/validation.json")), testing::StartsWith("[\n"));
 }
 
+TEST(BenchRounding, MeasuresADeviceAndTheCpu) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      run_bench({"rounding", "--quick", "--device", "opencl:0", "--output", folder.file("results")});
+  ASSERT_EQ(result.exit_code, 0) << result.out << result.err;
+  const Table table = read_csv(folder.file("results/rounding.csv"));
+  ASSERT_EQ(table.rows.size(), 5U);
+  for (std::size_t row = 0; row < table.rows.size(); ++row) {
+    EXPECT_EQ(table.text(row, "passed"), "true");
+    EXPECT_GT(table.number(row, "change"), 0) << table.text(row, "scene");
+    EXPECT_GT(table.number(row, "change on the CPU"), 0);
+  }
+}
+
 TEST(Bench, OutputMeasuresEachFormat) {
   const Table table = bench_table("output", {"output", "--case", "dam-break-1k"});
   ASSERT_EQ(table.rows.size(), 7u);

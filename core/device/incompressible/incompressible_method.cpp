@@ -38,13 +38,15 @@ struct IncompressibleState {
   Buffer pressure;
 };
 
-/// Returns whether a step can be too long for explicit viscosity.
-bool needs_viscosity_solve(const Model& model) {
-  return !solids_move(model) && must_solve_own_damping(model, model.scene.numerics.step);
-}
-
 bool is_adaptive(const Model& model) {
   return model.scene.numerics.control == StepControl::adaptive;
+}
+
+/// Returns whether a step can be too long for explicit viscosity.
+bool needs_viscosity_solve(const Model& model) {
+  const Real longest =
+      is_adaptive(model) ? longest_adaptive_step(model) : model.scene.numerics.step;
+  return !solids_move(model) && must_solve_own_damping(model, longest);
 }
 
 /// Steps of symplectic Euler, as Stepper::take_step(). Cells, neighbours and densities are those
@@ -107,7 +109,7 @@ class IncompressibleMethod : public DeviceMethod {
   IncompressibleState start_;                 ///< state before a call, for a failed step
   std::optional<DeviceStepControl> control_;  ///< only with adaptive steps
   StepHistory history_, saved_history_;
-  std::optional<ViscousLiquid> viscous_;  ///< only if steps do not resolve the viscosity
+  std::optional<ViscousLiquid> viscous_;  ///< only if a step may not resolve the viscosity
   VolumeReport report_, saved_report_;    ///< of the last step
   int shift_iterations_ = 0;              ///< of the last solve for positions
   ReadMotion read_;
@@ -185,7 +187,7 @@ void IncompressibleMethod::find_acceleration(const LiquidParameters& p,
 void IncompressibleMethod::kick(const LiquidParameters& p, const SolveParameters& solve,
                                 AdvanceReport& report) {
   DeviceParticles& s = particles_;
-  if (!viscous_) {
+  if (!viscous_ || !must_solve_own_damping(*model_, solve.dt)) {
     LiquidParameters without = p;
     for (double& g : without.gravity) g = 0;
     program_.run_in_lanes("kick", s.count(), without, solve, s.cells.begins, s.order,

@@ -73,6 +73,7 @@ constexpr Content kContents[] = {
     {"device-cases", "validate", "device", device_cases_table},
     {"kernels", "kernels", "kernels", kernels_table},
     {"times", "kernels", "times", times_table},
+    {"rounding", "rounding", "rounding", rounding_table},
     {"race", "race", "race", race_table},
     {"durability", "durability", "durability", durability_table},
     {"recovery", "recovery", "recovery", recovery_table},

@@ -321,6 +321,17 @@ Table times_table(const Json& times) {
   return table;
 }
 
+Table rounding_table(const Json& rounding) {
+  Table table{{"scene", "quantity", "device", "steps", "change", "change on the CPU", "bound"}, {}};
+  for (const Json& row : rounding) {
+    table.rows.push_back({cell_text(row, "scene"), cell_text(row, "quantity"),
+                          cell_text(row, "device"), row.at("steps").get<std::uint64_t>(),
+                          cell_number(row, "change"), cell_number(row, "change on the CPU"),
+                          cell_number(row, "bound")});
+  }
+  return table;
+}
+
 Table durability_table(const Json& durability) {
   constexpr const char* kTimes[] = {"median reply [ms]", "99 % reply [ms]", "median lateness [ms]",
                                     "99 % lateness [ms]"};

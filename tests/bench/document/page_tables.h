@@ -53,6 +53,8 @@ Table devices_table(const Json& speed);
 
 /// Work of the kernels of devices.
 Table kernels_table(const Json& kernels);
+/// Changes of conserved quantities by rounding errors, from rows of `vat bench rounding`.
+Table rounding_table(const Json& rounding);
 /// Predicted times of kernels on GPUs.
 Table times_table(const Json& times);
 
