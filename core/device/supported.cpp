@@ -78,18 +78,12 @@ void Missing::check_body(std::size_t index) {
         "resolve the viscosity");
   }
   if (body.kind != BodyKind::rigid) return;
-  reject(body.motion.has_value() && !body.angular_velocity.isZero(0), path + "/angular_velocity",
-         "must be 0 for a driven body");
   reject(
       body.axle && (is_incompressible() || model_.has_projection ||
                     scene_.numerics.integrator != IntegratorId::velocity_verlet),
       path + "/axle",
       "must be absent with incompressible liquids, contacts by projection, and integrators other "
       "than velocity_verlet");
-  if (!body.fixed && body.release == 0) return;
-  reject(!body.velocity.isZero(0), path + "/velocity", "must be 0 for a fixed or held body");
-  reject(!body.angular_velocity.isZero(0), path + "/angular_velocity",
-         "must be 0 for a fixed or held body");
 }
 
 void Missing::check_bodies() {

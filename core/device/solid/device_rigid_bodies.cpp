@@ -52,6 +52,7 @@ DeviceRigidBodies::Constants DeviceRigidBodies::constants_of(const Model& model,
     c.brake = std::exp(-damping * rigid.inverse_moments.maxCoeff() * step);
     c.has_axle = 1;
   }
+  c.is_driven = rigid.motion ? 1 : 0;
   std::ranges::copy(rigid.splitting, c.splitting);
   c.begin = static_cast<std::int32_t>(rigid.particles.begin - SolidRange(model).first);
   c.end = static_cast<std::int32_t>(rigid.particles.end - SolidRange(model).first);

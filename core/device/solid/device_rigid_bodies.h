@@ -37,12 +37,12 @@ class DeviceRigidBodies {
 
   /// Ends a step, and begins the next one; see move_rigid_bodies.
   void move(const SolidParameters& p, Real step, const opencl::Buffer& counters);
-  /// Moves the driven bodies from their positions at `start` to those at `end` [s]. They receive
-  /// the velocities at `end`.
+  /// Moves the centres of the driven bodies from their positions at `start` to those at `end` [s].
+  /// They receive the velocities at `end`. Their rotation is a part of move().
   void drive(const Model& model, Real start, Real end);
   /// Gives the driven bodies their mean velocities in a step of `step` from `start` [s].
   void begin_drive(const Model& model, Real start, Real step);
-  /// Moves the driven bodies for `dt` [s] with their velocities at `start` [s].
+  /// Moves the centres of the driven bodies for `dt` [s] with their velocities at `start` [s].
   void drift_driven(const Model& model, Real start, Real dt);
   /// Kicks the bodies by the forces over `dt` [s].
   void kick(Real dt);
@@ -85,6 +85,8 @@ class DeviceRigidBodies {
     std::int32_t body;
     std::int32_t is_held;
     std::int32_t has_axle;
+    std::int32_t is_driven;
+    std::int32_t padding;
   };
   /// The struct Pose of rigid.cl.
   struct Pose {

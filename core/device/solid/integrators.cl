@@ -29,7 +29,7 @@ kernel void take_euler_step_of_bodies(const Solids p, const int count, const dou
   const Rigid body = rigid[b];
   Pose pose = poses[b];
   kick_rigid(&pose, force, b, dt);
-  if (!body.is_held) drift_rigid(&body, dt, &pose);
+  drift_rigid(&body, dt, &pose);
   check_rigid(&p, &body, dt, &pose, status);
   poses[b] = pose;
 }
@@ -128,11 +128,11 @@ kernel void end_stages_of_bodies(const Solids p, const int count, const double d
   const Rigid body = rigid[b];
   const Pose sum = sums[b];
   Pose pose = start[b];
+  const bool is_kept = keeps_orientation(&body, &pose);
   add_scaled_rate(&pose, dt, &sum);
   const double4 q = orientation_of(&pose);
   const double turned[4] = {q.x, q.y, q.z, q.w};
-  // A held body at rest remains bitwise equal.
-  for (int k = 0; k < 4 && !body.is_held; ++k) pose.orientation[k] = turned[k];
+  for (int k = 0; k < 4 && !is_kept; ++k) pose.orientation[k] = turned[k];
   check_rigid(&p, &body, dt, &pose, status);
   poses[b] = pose;
 }

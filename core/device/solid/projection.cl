@@ -141,7 +141,7 @@ kernel void predict_bodies(const int count, const double dt, global const Rigid*
   const Pose from = start[b];
   for (int k = 0; k < 3; ++k) pose.center[k] = from.center[k];
   for (int k = 0; k < 4; ++k) pose.orientation[k] = from.orientation[k];
-  if (!body.is_held) drift_rigid(&body, dt, &pose);
+  drift_rigid(&body, dt, &pose);
   poses[b] = pose;
   predicted[b] = motions[b];
   store_vector(body.inverse_mass * three(pose.momentum), speeds, body.body);

@@ -1,5 +1,5 @@
 // Rigid bodies: poses, their particles, and resultants of forces. Quaternions have the order x, y, z,
-// w. Bodies that are held do not feel forces. `spins` and `speeds` are indexed by all bodies of the
+// w. Bodies that are held do not feel forces, but move with constant momentum. `spins` and `speeds` are indexed by all bodies of the
 // scene, and 0 for others.
 
 typedef struct {
@@ -20,6 +20,8 @@ typedef struct {
   int body;
   int is_held;
   int has_axle;
+  int is_driven;
+  int padding;
 } Rigid;
 
 typedef struct {
@@ -165,9 +167,22 @@ void end_rigid_step(const Solids* p, const Rigid* body, global const double* for
   check_rigid(p, body, dt, pose, status);
 }
 
-// Moves a body by its velocity and its free rotation.
+bool is_zero(const double* v) {
+  return v[0] == 0 && v[1] == 0 && v[2] == 0;
+}
+
+// Whether a body does not rotate before its release. Its orientation remains bitwise equal.
+bool keeps_orientation(const Rigid* body, const Pose* pose) {
+  return body->is_held && is_zero(pose->angular_momentum);
+}
+
+// Moves a body by its velocity and its free rotation. The kernel drive_rigid_body moves the centre of
+// a driven body.
 void drift_rigid(const Rigid* body, double dt, Pose* pose) {
-  for (int k = 0; k < 3; ++k) pose->center[k] += (dt * body->inverse_mass) * pose->momentum[k];
+  for (int k = 0; k < 3 && !body->is_driven; ++k) {
+    pose->center[k] += (dt * body->inverse_mass) * pose->momentum[k];
+  }
+  if (keeps_orientation(body, pose)) return;
   const double4 q =
       rotate_freely(body, orientation_of(pose), three(pose->angular_momentum), dt);
   pose->orientation[0] = q.x;
@@ -188,8 +203,7 @@ kernel void move_rigid_bodies(const Solids p, const int count, const double dt,
   Pose pose = poses[b];
   end_rigid_step(&p, &body, force, b, dt, &pose, status);
   kick_rigid(&pose, force, b, p.opening);
-  // A driven body is held, and drive_rigid_body moves it.
-  if (p.drift > 0 && !body.is_held) drift_rigid(&body, p.drift, &pose);
+  if (p.drift > 0) drift_rigid(&body, p.drift, &pose);
   poses[b] = pose;
   kick_rigid(&pose, force, b, p.prediction);
   store_vector(body.inverse_mass * three(pose.momentum), speeds, body.body);
@@ -202,7 +216,7 @@ typedef struct {
   double velocity[3];
 } Drive;
 
-// Moves the driven body b, and gives it a velocity. Runs with one work-item of index 0.
+// Moves the centre of the driven body b, and gives it a velocity. Runs with one work-item of index 0.
 kernel void drive_rigid_body(const int b, const Drive drive, global const Rigid* rigid,
                              global Pose* poses, global double* speeds) {
   if (get_global_id(0) != 0) return;

@@ -21,8 +21,10 @@ constexpr Real kMostSolidCells = 4096;  // in addition to those in proportion to
 
 bool solids_move(const Model& model) {
   return model.free_count > model.liquid_count ||
-         std::ranges::any_of(model.rigid_bodies, [](const RigidModel& rigid) {
-           return rigid.free_from != kNever || rigid.motion;
+         std::ranges::any_of(model.rigid_bodies, [&](const RigidModel& rigid) {
+           const BodyDescription& body = model.scene.bodies[rigid.body];
+           return rigid.free_from != kNever || rigid.motion || !body.velocity.isZero(0) ||
+                  !body.angular_velocity.isZero(0);
          });
 }
 

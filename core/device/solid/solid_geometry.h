@@ -63,7 +63,8 @@ struct SolidRange {
   std::size_t count;
 };
 
-/// Returns whether any solid can move. In a liquid, solids at rest need less memory and work.
+/// Returns whether any solid can move. Fixed bodies move with their initial velocities. In a
+/// liquid, solids at rest need less memory and work.
 bool solids_move(const Model& model);
 
 /// Computes the parameters of kernels for the particles of SolidRange.

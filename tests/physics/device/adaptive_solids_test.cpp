@@ -48,6 +48,15 @@ const SceneCase kScenes[] = {
        scene.bodies[1].velocity.setZero();
        scene.bodies[1].angular_velocity.setZero();
      }},
+    {"ball that moves before its release, and a piston that rotates",
+     [](Scene& scene) {
+       add_rotating_piston(scene);
+       scene.bodies[1].release = 2 * scene.numerics.step;
+     }},
+    {"fixed ball that moves",
+     [](Scene& scene) {
+       add_fixed_mover(scene, {-0.5, 0, 0}, {0, 20, 5});
+     }},
     {"ball in two dimensions", set_plane},
 };
 

@@ -29,9 +29,23 @@ const SceneCase kRigidScenes[] = {
        scene.bodies[1].velocity.setZero();
        scene.bodies[1].angular_velocity.setZero();
      }},
+    {"ball that moves before its release",
+     [](Scene& scene) {
+       scene.bodies[1].release = 0.01;
+       scene.bodies[1].position.z() = 0.18;
+     }},
+    {"fixed ball that moves",
+     [](Scene& scene) {
+       add_fixed_mover(scene, {-0.5, 0, 0}, Vec3::Zero());
+     }},
+    {"fixed ball that rotates",
+     [](Scene& scene) {
+       add_fixed_mover(scene, Vec3::Zero(), {0, 20, 5});
+     }},
     {"ball with contacts by projection",
      [](Scene& scene) { scene.default_interface.law = InterfaceLaw::projection; }},
     {"piston", add_piston},
+    {"piston that rotates", add_rotating_piston},
     {"piston in two dimensions",
      [](Scene& scene) {
        add_piston(scene);
@@ -217,18 +231,12 @@ TEST(CoupledDevice, HasTheAccuracyOfTheCpuWithOtherIntegrators) {
 
 TEST(CoupledDevice, RefusesFeaturesThatItLacks) {
   const SceneCase cases[] = {
-      {"/bodies/1/velocity", [](Scene& s) { s.bodies[1].release = 1; }},
       {"/bodies/1/axle",
        [](Scene& s) {
          s.numerics.integrator = IntegratorId::heun;
          s.bodies[1].axle = Axle{{0, 0, 1}};
          s.bodies[1].velocity.setZero();
          s.bodies[1].angular_velocity.setZero();
-       }},
-      {"/bodies/2/angular_velocity",
-       [](Scene& s) {
-         add_piston(s);
-         s.bodies[2].angular_velocity = {0, 0, 1};
        }},
       {"/default_interface",
        [](Scene& s) { s.default_interface.law = InterfaceLaw::lennard_jones; }},

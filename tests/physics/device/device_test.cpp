@@ -248,18 +248,6 @@ TEST(Device, RestoresTheStateBeforeAFailedStep) {
 
 TEST(Device, RefusesFeaturesThatItLacks) {
   const SceneCase cases[] = {
-      {"/bodies/1/velocity",
-       [](Scene& s) {
-         s.materials.push_back(make_material("stone", 2000));
-         s.bodies.push_back(make_fixed("stone", SphereShape{{0.25, 0.06, 0.3}, 0.02}, 0.01));
-         s.bodies[1].velocity = {0.1, 0, 0};
-       }},
-      {"/bodies/1/angular_velocity",
-       [](Scene& s) {
-         s.materials.push_back(make_material("stone", 2000));
-         s.bodies.push_back(make_fixed("stone", SphereShape{{0.25, 0.06, 0.3}, 0.02}, 0.01));
-         s.bodies[1].angular_velocity = {0.1, 0, 0};
-       }},
       {"/bodies/1/material",
        [](Scene& s) {
          s.numerics.control = StepControl::adaptive;

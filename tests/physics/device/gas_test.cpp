@@ -64,6 +64,12 @@ const SceneCase kScenes[] = {
        scene.bodies[1].angular_velocity = {2, 5, -1};
        scene.default_interface.friction = 0.3;
      }},
+    {"fixed body that moves through a liquid",
+     [](Scene& scene) {
+       add_solid(scene, BodyKind::rigid, {0.09, 0.06, 0.205});
+       scene.bodies[1].angular_velocity = {2, 5, -1};
+       scene.bodies[1].fixed = true;
+     }},
     {"deformable body on a liquid",
      [](Scene& scene) {
        add_solid(scene, BodyKind::deformable, {0.09, 0.06, 0.205});

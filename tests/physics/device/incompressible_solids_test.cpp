@@ -69,7 +69,23 @@ const SceneCase kGuidedScenes[] = {
        scene.bodies[1].velocity.setZero();
        scene.bodies[1].angular_velocity.setZero();
      }},
+    {"ball that moves before its release",
+     [](Scene& scene) {
+       scene.bodies[1].release = 8 * scene.numerics.step;
+       scene.bodies[1].position.z() = 0.18;
+     }},
+    {"fixed ball that moves",
+     [](Scene& scene) {
+       add_fixed_mover(scene, {-0.5, 0, 0}, Vec3::Zero());
+     }},
+    {"fixed ball that rotates, with contacts by projection",
+     [](Scene& scene) {
+       scene.default_interface.law = InterfaceLaw::projection;
+       add_fixed_mover(scene, Vec3::Zero(), {0, 20, 5});
+       add_other_ball(scene);
+     }},
     {"ball and piston", add_piston},
+    {"ball and piston that rotates", add_rotating_piston},
     {"ball and piston in two dimensions",
      [](Scene& scene) {
        add_piston(scene);
@@ -221,17 +237,11 @@ TEST(IncompressibleSolidsDevice, RestoresTheStateBeforeAFailedStep) {
 
 TEST(IncompressibleSolidsDevice, RefusesFeaturesThatItLacks) {
   const SceneCase cases[] = {
-      {"/bodies/1/velocity", [](Scene& s) { s.bodies[1].release = 1; }},
       {"/bodies/1/axle",
        [](Scene& s) {
          s.bodies[1].axle = Axle{{0, 0, 1}};
          s.bodies[1].velocity.setZero();
          s.bodies[1].angular_velocity.setZero();
-       }},
-      {"/bodies/2/angular_velocity",
-       [](Scene& s) {
-         add_piston(s);
-         s.bodies[2].angular_velocity = {0, 0, 1};
        }},
       {"/default_interface",
        [](Scene& s) {

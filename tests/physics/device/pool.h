@@ -53,6 +53,20 @@ inline void add_piston(Scene& scene) {
   scene.bodies.back().motion = SlideMotion{{-1, 0, 0.1}, 0.04, 0.2};
 }
 
+/// Adds a piston that also rotates.
+inline void add_rotating_piston(Scene& scene) {
+  add_piston(scene);
+  scene.bodies.back().angular_velocity = {0, 4, 1};
+}
+
+/// Replaces the ball by a fixed ball that moves through the column with these velocities.
+inline void add_fixed_mover(Scene& scene, const Vec3& velocity, const Vec3& angular_velocity) {
+  scene.bodies[1].position = {0.19, 0.06, 0.08};
+  scene.bodies[1].velocity = velocity;
+  scene.bodies[1].angular_velocity = angular_velocity;
+  scene.bodies[1].fixed = true;
+}
+
 /// Adds a ball that collides with the first one.
 inline void add_other_ball(Scene& scene) {
   scene.bodies.push_back(make_solid("other ball", BodyKind::rigid, "wood",

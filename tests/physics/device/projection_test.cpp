@@ -73,6 +73,14 @@ const SceneCase kScenes[] = {
        scene.bodies[0].velocity.setZero();
        scene.bodies[0].angular_velocity.setZero();
      }},
+    {"fixed marble that moves",
+     [](Scene& scene) {
+       scene.default_interface.friction = 0.4;
+       scene.bodies[0].fixed = true;
+       scene.bodies[0].velocity = {0.5, 0, 0};
+     }},
+    {"marble that moves before its release",
+     [](Scene& scene) { scene.bodies[1].release = 20 * scene.numerics.step; }},
     {"through the sides of a periodic world",
      [](Scene& scene) {
        scene.periodic = Periodicity{{0, 0, 0}, {0.6, 0.4, 0}, {true, true, false}};

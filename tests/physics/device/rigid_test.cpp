@@ -54,7 +54,34 @@ const SceneCase kScenes[] = {
        scene.bodies[0].angular_velocity.setZero();
        scene.bodies[0].motion = SlideMotion{{0.8, 0.6, 0}, 0.1, 0.2};
      }},
+    {"driven body that rotates, with friction",
+     [](Scene& scene) {
+       scene.default_interface.friction = 0.4;
+       scene.bodies[0].velocity.setZero();
+       scene.bodies[0].angular_velocity = {1, 8, 3};
+       scene.bodies[0].motion = SlideMotion{{0.8, 0.6, 0}, 0.1, 0.2};
+     }},
+    {"fixed bodies that move, with friction",
+     [](Scene& scene) {
+       scene.default_interface.friction = 0.4;
+       scene.bodies[0].fixed = scene.bodies[1].fixed = true;
+       scene.bodies[0].velocity = {0.3, 0.1, 0.2};
+       scene.bodies[0].angular_velocity.setZero();
+       scene.bodies[1].velocity.setZero();
+     }},
+    {"bodies that move before their release",
+     [](Scene& scene) {
+       scene.bodies[0].release = 40 * scene.numerics.step;
+       scene.bodies[0].velocity = {0.3, 0.1, 0.2};
+       scene.bodies[2].release = 100 * scene.numerics.step;
+       scene.bodies[2].velocity.setZero();
+     }},
     {"body on an axle with a brake", put_on_axle},
+    {"body that rotates on an axle before its release",
+     [](Scene& scene) {
+       put_on_axle(scene);
+       scene.bodies[0].release = 60 * scene.numerics.step;
+     }},
     {"strong damping and a body on an axle",
      [](Scene& scene) {
        put_on_axle(scene);
@@ -219,8 +246,17 @@ TEST(RigidDevice, HasTheMotionOfTheCpuWithOtherIntegrators) {
   expect_motion_with_other_integrators(scene, 60);
 }
 
+TEST(RigidDevice, HasTheMotionOfTheCpuWithOtherIntegratorsAndHeldBodies) {
+  Scene scene = make_heap();
+  scene.bodies[0].release = 20 * scene.numerics.step;
+  scene.bodies[0].velocity = {0.3, 0.1, 0.2};
+  scene.bodies[1].fixed = true;
+  expect_motion_with_other_integrators(scene, 60);
+}
+
 TEST(RigidDevice, HasTheSameBitsInAnyPortionsOfStepsWithOtherIntegrators) {
   Scene scene = make_heap();
+  scene.bodies[0].release = 20 * scene.numerics.step;
   for (const IntegratorId integrator : kOtherIntegrators) {
     scene.numerics.integrator = integrator;
     expect_same_bits_in_any_portions(scene, 2);
@@ -256,6 +292,40 @@ TEST(RigidDevice, HoldsABodyUntilItsRelease) {
   }
 }
 
+// The motion is uniform for a ball. Each step has one rounding error of a position, and about ten
+// of an orientation.
+TEST(RigidDevice, MovesHeldBodiesByTheirVelocities) {
+  constexpr std::uint32_t kSteps = 100;
+  const Vec3 velocity(0.3, -0.2, 0.5);
+  const Vec3 spin(3, 5, -4);
+  Scene fixed = make_ball(velocity, spin);
+  fixed.bodies[0].fixed = true;
+  Scene held = make_ball(velocity, spin);
+  held.bodies[0].release = 1;
+  Scene driven = make_ball(Vec3::Zero(), spin);
+  driven.bodies[0].motion = SlideMotion{{1, 0, 0}, 0, 1};
+  for (Scene* scene : {&fixed, &held, &driven}) {
+    for (const IntegratorId id :
+         {IntegratorId::velocity_verlet, IntegratorId::symplectic_euler, IntegratorId::heun}) {
+      if (id != IntegratorId::velocity_verlet && scene == &driven) continue;
+      scene->numerics.integrator = id;
+      Simulation device = make_on_device(*scene);
+      const RigidPose start = *device.bodies()[0].pose;
+      EXPECT_EQ(device.advance(kSteps).device_steps, kSteps);
+      const RigidPose end = *device.bodies()[0].pose;
+      const Vec3 way = device.time() * scene->bodies[0].velocity;
+      EXPECT_LT((end.center_of_mass - start.center_of_mass - way).norm(), kSteps * 0x1p-51);
+      const Real angle = device.time() * spin.norm();
+      const Quat turned =
+          Quat(Eigen::AngleAxis<Real>(angle, spin.normalized())) * start.orientation;
+      const Real turn = angle / kSteps;
+      const Real of_method = id == IntegratorId::heun ? turn * turn * turn : 0;
+      EXPECT_LT(end.orientation.angularDistance(turned), kSteps * (of_method + 10 * 0x1p-52));
+      EXPECT_NEAR(end.orientation.norm(), 1, 0x1p-51);
+    }
+  }
+}
+
 TEST(RigidDevice, RefusesFeaturesThatItLacks) {
   const SceneCase cases[] = {
       {"/bodies/0/axle",
@@ -263,13 +333,6 @@ TEST(RigidDevice, RefusesFeaturesThatItLacks) {
          put_on_axle(s);
          s.numerics.integrator = IntegratorId::heun;
        }},
-      {"/bodies/0/angular_velocity",
-       [](Scene& s) {
-         s.bodies[0].velocity.setZero();
-         s.bodies[0].motion = SlideMotion{{1, 0, 0}, 0.1, 1};
-       }},
-      {"/bodies/0/velocity", [](Scene& s) { s.bodies[0].fixed = true; }},
-      {"/bodies/0/velocity", [](Scene& s) { s.bodies[0].release = 1; }},
       {"/numerics/integrator",
        [](Scene& s) {
          s.numerics.integrator = IntegratorId::heun;

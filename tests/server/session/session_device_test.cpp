@@ -28,17 +28,15 @@ const Json kColumn = Json::parse(R"({
   "vat": {"min": [0, 0, 0], "max": [0.6, 0.24, 0.6]},
   "bodies": [{"name": "column", "kind": "liquid", "material": "water", "spacing": 0.04,
               "shape": {"type": "box", "center": [0.13, 0.12, 0.15], "size": [0.24, 0.24, 0.28]}}],
-  "numerics": {"step": 0.001, "tick": 0.004}})");
-/// A wheel, which a device does not support.
-const Json kDriven = {
-    {"name", "driven body"},
-    {"kind", "rigid"},
-    {"material", "wood"},
-    {"spacing", 0.04},
-    {"position", {0.45, 0.12, 0.45}},
-    {"shape", {{"type", "box"}, {"size", {0.08, 0.08, 0.08}}}},
-    {"angular_velocity", {0, 1, 0}},
-    {"motion", {{"type", "slide"}, {"axis", {1, 0, 0}}, {"stroke", 0.01}, {"period", 1}}}};
+  "numerics": {"integrator": "symplectic_euler", "step": 0.001, "tick": 0.004}})");
+/// A wheel, whose axle a device supports with velocity Verlet only.
+const Json kWheel = {{"name", "wheel"},
+                     {"kind", "rigid"},
+                     {"material", "wood"},
+                     {"spacing", 0.04},
+                     {"position", {0.45, 0.12, 0.45}},
+                     {"shape", {{"type", "box"}, {"size", {0.08, 0.08, 0.08}}}},
+                     {"axle", {{"direction", {0, 1, 0}}}}};
 
 Json column_on(const std::string& device) {
   Json scene = kColumn;
@@ -133,8 +131,8 @@ TEST_F(SessionDevice, ScenesWithOtherFeaturesAreRejected) {
   step(1);
   const std::string before = hash();
   Json scene = kColumn;
-  for (const char* name : {"driven body", "second driven body"}) {
-    scene["bodies"].push_back(kDriven);
+  for (const char* name : {"wheel", "second wheel"}) {
+    scene["bodies"].push_back(kWheel);
     scene["bodies"].back()["name"] = name;
   }
   for (const char* method : {"session.create", "scene.load"}) {
@@ -143,8 +141,7 @@ TEST_F(SessionDevice, ScenesWithOtherFeaturesAreRejected) {
     if (method == std::string("session.create")) params["name"] = "other";
     const Json error = client().error(method, params);
     EXPECT_EQ(error.at("data").at("kind"), "invalid_params");
-    EXPECT_THAT(paths_of(error), ElementsAre("/scene/bodies/1/angular_velocity",
-                                             "/scene/bodies/2/angular_velocity"));
+    EXPECT_THAT(paths_of(error), ElementsAre("/scene/bodies/1/axle", "/scene/bodies/2/axle"));
   }
   EXPECT_EQ(hash(), before);
   EXPECT_EQ(device(), "opencl:0");
@@ -263,12 +260,12 @@ TEST_F(SessionDevice, TheCpuTakesTheStepsWhileTheSceneHasOtherFeatures) {
   create(kColumn);
   step(1);
   client().mark();
-  const Json body = client().result("world.add_body", {{"body", kDriven}}).at("body");
+  const Json body = client().result("world.add_body", {{"body", kWheel}}).at("body");
   step(2);
   const std::vector<Json> events = client().events("session.device");
   ASSERT_EQ(events.size(), 1U);
   EXPECT_EQ(events[0].at("code"), "not_on_device");
-  EXPECT_EQ(events[0].at("path"), "/bodies/1/angular_velocity");
+  EXPECT_EQ(events[0].at("path"), "/bodies/1/axle");
   EXPECT_EQ(device_steps(), 4);
   crash(kOfScene);
   step(1);
@@ -280,7 +277,7 @@ TEST_F(SessionDevice, TheCpuTakesTheStepsWhileTheSceneHasOtherFeatures) {
   client().result("control.reset");
   step(1);
   EXPECT_EQ(device_steps(), before + 8);
-  client().result("world.add_body", {{"body", kDriven}});
+  client().result("world.add_body", {{"body", kWheel}});
   step(3);
   client().result("world.remove_body", {{"body", 3}});
   step(1);
