@@ -1,11 +1,11 @@
-#define INLINE inline __attribute__((always_inline))
-
 // The check of states, and sums over all particles.
 
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #ifdef VAT_EXACT
 #pragma OPENCL FP_CONTRACT OFF
 #endif
+
+#define INLINE static inline __attribute__((always_inline))
 
 // Particles of a group.
 #define GROUP 256
