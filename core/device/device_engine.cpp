@@ -26,14 +26,27 @@ Error failed(const std::string& message) {
 /// The steps of one kind of scenes.
 struct MethodKind {
   std::size_t (*bytes_for)(const Model& model);
-  std::unique_ptr<DeviceMethod> (*make)(Program& program, std::shared_ptr<const Model> model);
+  std::unique_ptr<DeviceMethod> (*make)(Program& program, std::shared_ptr<const Model> model,
+                                        const GuardBounds& bounds);
 };
+
+// Scenes with these solvers have no sleeping bodies, so that the bounds follow from the model.
+std::unique_ptr<DeviceMethod> make_tait(Program& program, std::shared_ptr<const Model> model,
+                                        const GuardBounds&) {
+  return make_tait_method(program, std::move(model));
+}
+
+std::unique_ptr<DeviceMethod> make_incompressible(Program& program,
+                                                  std::shared_ptr<const Model> model,
+                                                  const GuardBounds&) {
+  return make_incompressible_method(program, std::move(model));
+}
 
 MethodKind kind_of(const Model& model) {
   if (model.liquid_count == 0) return {&bytes_for_solids, &make_solid_method};
   if (!model.is_coupled) return {&bytes_for_gas, &make_gas_method};
-  if (model.is_incompressible) return {&bytes_for_incompressible, &make_incompressible_method};
-  return {&bytes_for_tait, &make_tait_method};
+  if (model.is_incompressible) return {&bytes_for_incompressible, &make_incompressible};
+  return {&bytes_for_tait, &make_tait};
 }
 
 std::string lanes_option(const opencl::Device& device) {
@@ -51,9 +64,10 @@ class DeviceEngine : public StepEngine {
         name_("opencl-" + std::string(to_string(arithmetic))) {}
 
   std::string_view arithmetic() const override { return name_; }
-  Status bind(std::shared_ptr<const Model> model) override;
+  Status bind(std::shared_ptr<const Model> model, const GuardBounds& bounds) override;
   Result<bool> advance(const EngineInput& input, std::uint32_t steps) override;
   Status read(State& state) override;
+  Status read_motions(BodyMotions& motions) override;
 
  private:
   /// Creates the program for the kernel, precision and liquids of a scene, if the present program
@@ -92,7 +106,7 @@ Status DeviceEngine::adapt_program(const Model& model) {
   return {};
 }
 
-Status DeviceEngine::bind(std::shared_ptr<const Model> model) {
+Status DeviceEngine::bind(std::shared_ptr<const Model> model, const GuardBounds& bounds) {
   method_.reset();  // before the allocation of new buffers
   // The CPU takes the steps until the first particles enter.
   if (model->liquid_count == 0 && !model->nozzles.empty()) return {};
@@ -109,7 +123,7 @@ Status DeviceEngine::bind(std::shared_ptr<const Model> model) {
                   std::to_string(used) + " are in use");
   }
   try {
-    method_ = kind.make(*program_, std::move(model));
+    method_ = kind.make(*program_, std::move(model), bounds);
   } catch (const DeviceFailure& failure) {
     return failed(failure.what());
   }
@@ -125,6 +139,16 @@ Result<bool> DeviceEngine::advance(const EngineInput& input, std::uint32_t steps
   } catch (const DeviceFailure& failure) {
     return failed(failure.what());
   }
+}
+
+Status DeviceEngine::read_motions(BodyMotions& motions) {
+  VAT_CHECK(method_ != nullptr);
+  try {
+    method_->read_motions(motions);
+  } catch (const DeviceFailure& failure) {
+    return failed(failure.what());
+  }
+  return {};
 }
 
 Status DeviceEngine::read(State& state) {

@@ -95,7 +95,8 @@ void Missing::check_world() {
   const bool is_tait = model_.is_coupled && !model_.is_incompressible;
   reject(!scene_.emitters.empty() && !is_tait, "/emitters",
          "must be empty with a pressure solver other than tait");
-  reject(scene_.sleeping.has_value(), "/sleeping", "must be absent");
+  reject(scene_.sleeping && model_.liquid_count > 0, "/sleeping",
+         "must be absent in a scene with liquids");
 }
 
 void Missing::check_gas() {

@@ -103,20 +103,27 @@ bool SimulationImpl::take_guarded_steps(std::uint32_t steps, AdvanceReport& repo
 
 bool SimulationImpl::take_parts(std::uint32_t steps, AdvanceReport& report) {
   while (steps > 0) {
-    read_from_device();
-    change_bodies_on_time(report);
-    const std::uint32_t part = steps_until_change(steps);
-    if (!advance_on_device(part, report) && !take_unchanged_steps(part, report)) return false;
+    if (all_sleep()) return take_guarded_steps(steps, report);
+    const bool sleeps = model->scene.sleeping.has_value();
+    if (!sleeps || bodies_change_at(state.step_count)) {
+      read_from_device();
+      change_bodies_on_time(report);
+    }
+    std::uint32_t part = steps_until_change(steps);
+    if (sleeps) part = sleep_and_wake_before(part);
+    if (all_sleep() || !advance_on_device(part, report)) {
+      if (!take_unchanged_steps(part, report, 1)) return false;
+    }
     steps -= part;
   }
   return true;
 }
 
-bool SimulationImpl::take_unchanged_steps(std::uint32_t steps, AdvanceReport& report) {
+bool SimulationImpl::take_unchanged_steps(std::uint32_t steps, AdvanceReport& report,
+                                          std::uint32_t checked) {
   for (std::uint32_t s = 0; s < steps; ++s) {
-    if (model->scene.sleeping) sleep_and_wake();
-    const bool all_sleep = sleepers && model->bodies.empty();
-    if (!all_sleep && !take_nominal_step(report)) return false;
+    if (model->scene.sleeping && s >= checked) sleep_and_wake();
+    if (!all_sleep() && !take_nominal_step(report)) return false;
     ++state.step_count;
     if (model->periodic.any()) {
       enter("wrap");
@@ -155,19 +162,24 @@ void SimulationImpl::read_from_device() {
   if (unread_steps == 0) return;
   const auto steps = static_cast<std::uint32_t>(std::exchange(unread_steps, 0));
   const Status read = engine->read(state);
-  if (read) return;
+  if (read) {
+    show();
+    return;
+  }
   engine_error = read.errors().front();
   engine.reset();
   state.step_count -= steps;
   AdvanceReport repeated;
-  if (!take_unchanged_steps(steps, repeated)) engine_error->message += "; the last steps are lost";
+  if (!take_unchanged_steps(steps, repeated, steps))
+    engine_error->message += "; the last steps are lost";
+  show();
 }
 
 Result<bool> SimulationImpl::fit_engine(AdvanceReport& report) {
   if (engine_model == model) return engine_fits;
   VAT_CHECK(unread_steps == 0);  // a command reads the state before it changes the model
   const bool fitted = engine_fits;
-  const Status bound = engine->bind(model);
+  const Status bound = engine->bind(model, bounds);
   engine_model = model;
   engine_fits = bound.ok();
   device_is_current = false;
@@ -204,12 +216,16 @@ AdvanceReport Simulation::advance(std::uint32_t steps) {
   VAT_CHECK(impl.model != nullptr);
   AdvanceReport report;
   const ObservedCall call(impl.observer);
-  const bool changes =
-      impl.engine != nullptr && steps > 0 &&
-      (impl.bodies_change_at(impl.state.step_count) || impl.steps_until_change(steps) < steps);
+  const bool is_on_device = impl.engine != nullptr && steps > 0 && !impl.all_sleep();
+  bool changes = is_on_device && (impl.bodies_change_at(impl.state.step_count) ||
+                                  impl.steps_until_change(steps) < steps);
+  if (is_on_device && !changes && impl.model->scene.sleeping) {
+    if (impl.advance_quietly_on_device(steps, report)) return report;
+    changes = true;
+  }
   if (changes) {
     impl.read_from_device();
-  } else if (impl.advance_on_device(steps, report)) {
+  } else if (is_on_device && impl.advance_on_device(steps, report)) {
     return report;
   }
   if (impl.engine_error) report.device_error = std::exchange(impl.engine_error, std::nullopt);

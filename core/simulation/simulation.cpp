@@ -101,20 +101,27 @@ void SimulationImpl::adopt(SimulationContent content, GuardBounds content_bounds
 InstructionSet Simulation::instruction_set() const {
   return impl_.unread().work.instructions;
 }
+const std::shared_ptr<const Model>& SimulationImpl::model_of_all() const {
+  return sleepers ? sleepers->model : model;
+}
+
 Status Simulation::set_engine(std::unique_ptr<StepEngine> engine) {
   VAT_CHECK(engine != nullptr);
-  if (Status bound = engine->bind(impl_->model); !bound) return bound;
+  // The engine must have the features of sleeping bodies, too.
+  std::shared_ptr<const Model> all = impl_->model_of_all();
+  if (Status bound = engine->bind(all, guard_bounds(*all)); !bound) return bound;
   impl_->engine = std::move(engine);
-  impl_->engine_model = impl_->model;
+  impl_->engine_model = std::move(all);
   impl_->engine_fits = true;
   return {};
 }
 Status Simulation::resume_engine(std::unique_ptr<StepEngine> engine) {
   VAT_CHECK(engine != nullptr);
-  const Status bound = engine->bind(impl_->model);
+  std::shared_ptr<const Model> all = impl_->model_of_all();
+  const Status bound = engine->bind(all, guard_bounds(*all));
   if (!bound && !lacks_features(bound)) return bound;
   impl_->engine = std::move(engine);
-  impl_->engine_model = impl_->model;
+  impl_->engine_model = std::move(all);
   impl_->engine_fits = bound.ok();
   return {};
 }

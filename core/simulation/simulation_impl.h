@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -79,6 +80,10 @@ struct SimulationImpl : SimulationContent {
   // Buffers of wake_near().
   std::vector<Index> near;
   std::vector<Index> woken;
+  // Buffers of find_quiet_steps().
+  BodyMotions motions;
+  Configuration seen;  ///< rigid states of the device, and the particles of some bodies
+  std::vector<std::uint32_t> next_looks;
 
   Real step_size() const { return model->scene.numerics.step; }
   std::uint32_t steps_per_tick() const {
@@ -88,6 +93,8 @@ struct SimulationImpl : SimulationContent {
   Real time() const { return static_cast<Real>(state.step_count) * step_size(); }
   /// Returns the configuration of all bodies. It is valid between calls.
   const Configuration& all_now() const { return sleepers ? shown : state.now; }
+  /// Returns the model of all bodies, including sleepers.
+  const std::shared_ptr<const Model>& model_of_all() const;
   const ModelBody* find(BodyId id) const;
   const ModelBody* find(std::string_view name) const;
   BodyView view_of(const ModelBody& body) const;
@@ -139,6 +146,30 @@ struct SimulationImpl : SimulationContent {
   void sleep_and_wake();
   void look_for_rest();
   void wake_near();
+  /// Counts the slow checks of the stepped bodies in `counts`, by their motion: the rigid states of
+  /// `at`, and `particles` or else the particles of `at`. Returns whether a search for islands is
+  /// due.
+  bool count_slow_looks(const Configuration& at, std::span<const ParticleMotion> particles,
+                        std::vector<std::uint32_t>& counts) const;
+  /// Returns whether all bodies sleep.
+  bool all_sleep() const { return sleepers && model->bodies.empty(); }
+  /// Returns the number of steps until the next tick, at most `most`.
+  std::uint32_t steps_until_tick(std::uint32_t most) const;
+  /// Performs sleep_and_wake() by the motion of bodies on the device, before steps of the engine.
+  /// Returns the number of steps, at most `most`, until the next check that can change the sleeping
+  /// bodies. The result is 0, and nothing changes, if the check needs the whole state.
+  std::uint32_t find_quiet_steps(std::uint32_t most);
+  /// Returns the number of steps, at most `most`, in which no stepped body wakes a sleeper, by the
+  /// motion in `seen` and `motions`. The result is 0 if a body may wake one before the next step.
+  std::uint32_t steps_without_wake(std::uint32_t most);
+  /// Returns this number for one body.
+  std::uint32_t steps_without_wake_by(Index body, Real reach, std::uint32_t most);
+  /// Performs sleep_and_wake() before steps of the engine. Reads the state from the engine only if
+  /// necessary. Returns the number of steps until the next check, at most `most`.
+  std::uint32_t sleep_and_wake_before(std::uint32_t most);
+  /// Takes the steps of a call by the engine, if they need one check for sleep, which changes no
+  /// sleeping body. Otherwise returns false, with an unchanged content.
+  bool advance_quietly_on_device(std::uint32_t steps, AdvanceReport& report);
   /// Updates `shown` if any body sleeps.
   void show();
   /// Continues with the bodies for which `islands` has the value kAwake. `now` is the configuration
@@ -173,7 +204,8 @@ struct SimulationImpl : SimulationContent {
   /// Takes nominal steps on the CPU. Returns whether no step has failed.
   bool take_guarded_steps(std::uint32_t steps, AdvanceReport& report);
   /// Takes steps in which no changes of bodies are due, or before which they have been performed.
-  bool take_unchanged_steps(std::uint32_t steps, AdvanceReport& report);
+  /// Checks for sleep precede all steps except the first `checked`.
+  bool take_unchanged_steps(std::uint32_t steps, AdvanceReport& report, std::uint32_t checked = 0);
   /// Takes the steps between two changes of bodies by the engine if possible, and otherwise on the
   /// CPU. Returns whether no step has failed.
   bool take_parts(std::uint32_t steps, AdvanceReport& report);

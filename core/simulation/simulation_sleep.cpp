@@ -107,27 +107,34 @@ void SimulationImpl::wake_all() {
   std::ranges::fill(state.slow_looks, 0);
 }
 
-void SimulationImpl::look_for_rest() {
+bool SimulationImpl::count_slow_looks(const Configuration& at,
+                                      std::span<const ParticleMotion> particles,
+                                      std::vector<std::uint32_t>& counts) const {
   const Scene& scene = model->scene;
   if (prevents_sleep(scene, time())) {
-    std::ranges::fill(state.slow_looks, 0);
-    return;
+    std::ranges::fill(counts, 0);
+    return false;
   }
   const std::uint32_t needed = looks_of_rest(scene);
   const Real speed = scene.sleeping->speed;
-  VAT_CHECK(state.slow_looks.size() == model->bodies.size());
+  VAT_CHECK(counts.size() == model->bodies.size());
   bool any_rested = false;
   for (Index b = 0; b < model->bodies.size(); ++b) {
     const ModelBody& body = model->bodies[b];
-    std::uint32_t& looks = state.slow_looks[b];
-    const bool is_slow = greatest_speed(*model, body, state.now, speed) <= speed &&
-                         !is_still(*model, body, state.now) &&
-                         !is_driven(*model, state, controls, b);
-    looks = is_slow ? std::min(looks + 1, needed) : 0;
-    any_rested = any_rested || looks == needed;
+    const bool is_measured = !particles.empty() && body.kind != BodyKind::rigid;
+    const Real greatest =
+        is_measured ? particles[b].speed : greatest_speed(*model, body, at, speed);
+    const bool is_slow =
+        greatest <= speed && !is_still(*model, body, at) && !is_driven(*model, state, controls, b);
+    counts[b] = is_slow ? std::min(counts[b] + 1, needed) : 0;
+    any_rested = any_rested || counts[b] == needed;
   }
-  if (!any_rested || state.step_count / steps_per_tick() % kLooksPerSearch != 0) return;
+  return any_rested && state.step_count / steps_per_tick() % kLooksPerSearch == 0;
+}
 
+void SimulationImpl::look_for_rest() {
+  if (!count_slow_looks(state.now, {}, state.slow_looks)) return;
+  const std::uint32_t needed = looks_of_rest(model->scene);
   pose_rigid_particles();
   std::vector<char> rested;
   for (const std::uint32_t looks : state.slow_looks) rested.push_back(looks == needed);

@@ -139,9 +139,14 @@ TEST(DeviceCommand, BenchMeasuresADeviceBesideTheCpu) {
   EXPECT_EQ(table.text(1, "instruction set"), "opencl:0");
   EXPECT_EQ(table.number(0, "steps"), table.number(1, "steps"));
   EXPECT_NE(table.text(0, "state hash"), table.text(1, "state hash"));
-  const std::string clay = VAT_SOURCE_DIR "/protocol/scenes/clay.json";
-  EXPECT_THAT(run_bench({"speed", "--quick", "--device", "opencl", clay}),
-              exits(1, HasSubstr("/sleeping: must be absent")));
+  const std::string refused = folder.file("refused.json");
+  std::ifstream clay(VAT_SOURCE_DIR "/protocol/scenes/clay.json");
+  nlohmann::json scene = nlohmann::json::parse(clay);
+  scene["default_interface"] = {{"stiffness", 20000}, {"restitution", 0.5}};
+  std::ofstream(refused) << scene;
+  EXPECT_THAT(
+      run_bench({"speed", "--quick", "--device", "opencl", refused}),
+      exits(1, HasSubstr("/default_interface: must have a damping in place of a restitution")));
 }
 
 TEST(DeviceCommand, RecordsOnADevice) {

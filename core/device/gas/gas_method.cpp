@@ -35,9 +35,8 @@ std::size_t bytes_for_gas(const Model& model) {
   return bytes_for_solids(model) + DeviceGas::bytes_for(model);
 }
 
-std::unique_ptr<DeviceMethod> make_gas_method(Program& program,
-                                              std::shared_ptr<const Model> model) {
-  const GuardBounds bounds = guard_bounds(*model);
+std::unique_ptr<DeviceMethod> make_gas_method(Program& program, std::shared_ptr<const Model> model,
+                                              const GuardBounds& bounds) {
   return std::make_unique<GasMethod>(program, std::move(model), bounds);
 }
 

@@ -134,14 +134,22 @@ void DeviceRigidBodies::read() {
   program_.read(force, std::span(read_forces_));
 }
 
+RigidState DeviceRigidBodies::state_of(const Pose& pose) {
+  return {Vec3(pose.center), Quat(pose.orientation), Vec3(pose.momentum),
+          Vec3(pose.angular_momentum)};
+}
+
+void DeviceRigidBodies::read_states(std::vector<RigidState>& states) {
+  states.clear();
+  if (count_ == 0) return;
+  read_poses_.resize(count_);
+  program_.read(poses, std::span(read_poses_));
+  for (const Pose& pose : read_poses_) states.push_back(state_of(pose));
+}
+
 void DeviceRigidBodies::copy_to(State& state) const {
   for (std::size_t b = 0; b < count_; ++b) {
-    const Pose& pose = read_poses_[b];
-    RigidState& body = state.now.rigid[b];
-    body.center_of_mass = Vec3(pose.center);
-    body.orientation = Quat(pose.orientation);
-    body.momentum = Vec3(pose.momentum);
-    body.angular_momentum = Vec3(pose.angular_momentum);
+    state.now.rigid[b] = state_of(read_poses_[b]);
     state.forces.rigid_force[b] = read_forces_[2 * b];
     state.forces.rigid_torque[b] = read_forces_[2 * b + 1];
   }

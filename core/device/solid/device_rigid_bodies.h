@@ -31,6 +31,8 @@ class DeviceRigidBodies {
   /// Reads the poses and forces. The functions copy_to() then write them.
   void read();
   void copy_to(State& state) const;
+  /// Reads the motion of the bodies only.
+  void read_states(std::vector<RigidState>& states);
   /// Saves the present state, or returns to the saved one.
   void save();
   void restore();
@@ -101,6 +103,7 @@ class DeviceRigidBodies {
   static constexpr std::size_t kPoseBytes = sizeof(Pose);
 
  private:
+  static RigidState state_of(const Pose& pose);
   static Constants constants_of(const Model& model, const GuardBounds& bounds, std::size_t b);
   void drive_body(std::size_t b, const Vec3& way, const Vec3& velocity);
 

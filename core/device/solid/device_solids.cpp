@@ -70,6 +70,7 @@ DeviceSolids::DeviceSolids(Program& program, const Model& model, const GuardBoun
   if (has_implicit_springs(model)) implicit_springs_.emplace(program, model);
   if (!model.limited_springs.empty()) elongation_.emplace(program, model);
   if (model.has_projection) projection_.emplace(program, model);
+  if (model.scene.sleeping) body_motions_.emplace(program, model, range_.first);
 }
 
 std::size_t DeviceSolids::bytes_for(const Model& model) {
@@ -86,7 +87,8 @@ std::size_t DeviceSolids::bytes_for(const Model& model) {
          (model.springs_change ? DeviceSpringChanges::bytes_for(model) : 0) +
          (has_implicit_springs(model) ? DeviceImplicitSprings::bytes_for(model) : 0) +
          (model.limited_springs.empty() ? 0 : DeviceElongation::bytes_for(model)) +
-         (model.has_projection ? DeviceProjection::bytes_for(model) : 0);
+         (model.has_projection ? DeviceProjection::bytes_for(model) : 0) +
+         (model.scene.sleeping ? DeviceBodyMotions::bytes_for(model) : 0);
 }
 
 void DeviceSolids::write(const State& state) {
@@ -126,6 +128,12 @@ void DeviceSolids::copy_to(State& state) const {
   for (std::size_t b = 0; b < rigid_.count(); ++b) {
     pose_rigid_body(model_, model_.rigid_bodies[b], state.now.rigid[b], state.now);
   }
+}
+
+void DeviceSolids::read_motions(BodyMotions& motions) {
+  VAT_CHECK(body_motions_.has_value());
+  rigid_.read_states(motions.rigid);
+  body_motions_->read(motion_, motions.particles);
 }
 
 void DeviceSolids::save() {

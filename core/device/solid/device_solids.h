@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/device/common/device_body_motions.h"
 #include "core/device/common/device_cells.h"
 #include "core/device/common/device_counters.h"
 #include "core/device/common/device_motion.h"
@@ -53,6 +54,8 @@ class DeviceSolids {
   /// Reads the state. The function copy_to() then writes it.
   void read();
   void copy_to(State& state) const;
+  /// Reads the motion of the bodies at the end of a step. The scene must have sleeping.
+  void read_motions(BodyMotions& motions);
   /// Saves the present state, or returns to the saved one.
   void save();
   void restore();
@@ -193,6 +196,7 @@ class DeviceSolids {
   std::optional<DeviceImplicitSprings> implicit_springs_;
   std::optional<DeviceElongation> elongation_;  ///< only if springs are limited
   std::optional<DeviceProjection> projection_;
+  std::optional<DeviceBodyMotions> body_motions_;  ///< only with sleeping
   ReadMotion read_;
   std::vector<Vec3> read_forces_;
   Oscillation bound_, saved_bound_;  ///< of the last forces

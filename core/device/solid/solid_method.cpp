@@ -56,8 +56,8 @@ std::size_t bytes_for_solids(const Model& model) {
 }
 
 std::unique_ptr<DeviceMethod> make_solid_method(Program& program,
-                                                std::shared_ptr<const Model> model) {
-  const GuardBounds bounds = guard_bounds(*model);
+                                                std::shared_ptr<const Model> model,
+                                                const GuardBounds& bounds) {
   return std::make_unique<SolidMethod>(program, std::move(model), bounds);
 }
 

@@ -19,6 +19,7 @@ class SolidMethod : public VerletMethod {
               const GuardBounds& bounds);
 
   void read(State& state) override;
+  void read_motions(BodyMotions& motions) override { solids_.read_motions(motions); }
 
  protected:
   void evaluate(const StepMoment& start, Real end) override;
@@ -51,6 +52,7 @@ std::size_t bytes_for_solids(const Model& model);
 /// Returns the steps of deformable and rigid bodies, with the kernels of core/device/solid. Throws
 /// opencl::DeviceFailure.
 std::unique_ptr<DeviceMethod> make_solid_method(opencl::Program& program,
-                                                std::shared_ptr<const Model> model);
+                                                std::shared_ptr<const Model> model,
+                                                const GuardBounds& bounds);
 
 }  // namespace vat

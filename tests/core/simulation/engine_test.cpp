@@ -25,8 +25,9 @@ class FakeEngine : public StepEngine {
  public:
   explicit FakeEngine(Recorded& record) : record_(record) {}
   std::string_view arithmetic() const override { return "fake"; }
-  Status bind(std::shared_ptr<const Model>) override {
+  Status bind(std::shared_ptr<const Model> model, const GuardBounds&) override {
     ++record_.binds;
+    model_ = std::move(model);
     if (record_.is_lost) return Error{"device_failed", "/device", "lost"};
     if (!record_.is_bindable) return Error{"not_on_device", "/bodies/1/kind", "no solids"};
     return {};
@@ -42,8 +43,15 @@ class FakeEngine : public StepEngine {
     if (record_.is_lost) return Error{"device_failed", "/device", "lost"};
     return {};
   }
+  Status read_motions(BodyMotions& motions) override {
+    if (record_.is_lost) return Error{"device_failed", "/device", "lost"};
+    motions.rigid = initial_state(*model_).now.rigid;
+    motions.particles.resize(model_->bodies.size());
+    return {};
+  }
 
  private:
+  std::shared_ptr<const Model> model_;
   Recorded& record_;
 };
 
@@ -145,6 +153,54 @@ TEST(Engine, RepeatsNoInflowIfTheDeviceIsLost) {
   simulation.advance(2);
   record.is_lost = true;
   EXPECT_EQ(simulation.state_hash(), cpu.state_hash());
+}
+
+/// Returns a scene with sleeping in which a body is at rest, also without steps.
+Scene make_scene_at_rest() {
+  Scene scene = make_scene(IntegratorId::velocity_verlet, 1e-3);
+  scene.numerics.tick = 4e-3;
+  scene.materials = {make_material("stone", 1000)};
+  scene.bodies = {
+      make_body("stone", BodyKind::rigid, "stone", make_particles({Vec3::Zero()}, 1), 0.05)};
+  scene.sleeping = Sleeping{0.01, 0.1};
+  return scene;
+}
+
+// Each check for sleep counts once, also if the CPU repeats a step.
+TEST(Engine, CountsEachCheckForSleepOnce) {
+  struct Case {
+    const char* name;
+    bool refuses;
+    bool is_lost;
+    std::uint32_t steps;
+  };
+  for (const Case& one :
+       {Case{"refused", true, false, 4}, Case{"lost", false, true, 4},
+        Case{"refused in parts", true, false, 10}, Case{"lost in parts", false, true, 10}}) {
+    SCOPED_TRACE(one.name);
+    Simulation cpu = make_advanced(make_scene_at_rest(), 8 + one.steps);
+    Recorded record;
+    Simulation simulation = make_simulation(make_scene_at_rest());
+    ASSERT_TRUE(simulation.set_engine(std::make_unique<FakeEngine>(record)).ok());
+    EXPECT_EQ(simulation.advance(4).device_steps, 4U);
+    EXPECT_EQ(simulation.advance(4).device_steps, 4U);
+    record.refuses = one.refuses;
+    record.is_lost = one.is_lost;
+    simulation.advance(one.steps);
+    EXPECT_EQ(std::as_const(simulation).state_hash(), cpu.state_hash());
+  }
+}
+
+TEST(Engine, StepsNoBodyThatSleeps) {
+  Recorded record;
+  Simulation simulation = make_simulation(make_scene_at_rest());
+  ASSERT_TRUE(simulation.set_engine(std::make_unique<FakeEngine>(record)).ok());
+  simulation.advance(400);
+  EXPECT_EQ(simulation.sleeping_body_count(), 1U);
+  const std::size_t calls = record.continued.size();
+  simulation.advance(400);
+  EXPECT_EQ(record.continued.size(), calls);
+  EXPECT_EQ(record.binds, 1);
 }
 
 TEST(Engine, IsRefusedWithTheErrorsOfTheScene) {

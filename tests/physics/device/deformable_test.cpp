@@ -319,7 +319,6 @@ TEST(DeformableDevice, RefusesFeaturesThatItLacks) {
          s.interfaces = {{{"jelly", kVatMaterial}, {5000, 0}, {}}};
          s.interfaces[0].constants.restitution = 0.5;
        }},
-      {"/sleeping", [](Scene& s) { s.sleeping = Sleeping{}; }},
   };
   expect_refusals(make_blocks(), cases);
 }

@@ -288,13 +288,14 @@ TEST_F(SessionDevice, TheCpuTakesTheStepsWhileTheSceneHasOtherFeatures) {
 class LostEngine : public StepEngine {
  public:
   std::string_view arithmetic() const override { return "lost"; }
-  Status bind(std::shared_ptr<const Model>) override { return {}; }
+  Status bind(std::shared_ptr<const Model>, const GuardBounds&) override { return {}; }
   Result<bool> advance(const EngineInput& input, std::uint32_t steps) override {
     if (++calls_ > 1) return Error{"device_failed", "/device", "lost"};
     input.report.steps += steps;
     return true;
   }
   Status read(State&) override { return {}; }
+  Status read_motions(BodyMotions&) override { return {}; }
 
  private:
   int calls_ = 0;
