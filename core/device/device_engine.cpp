@@ -53,10 +53,24 @@ std::string lanes_option(const opencl::Device& device) {
   return " -DLANES=" + std::to_string(device.lanes);
 }
 
+/// The options of kernels by which the programs of scenes differ.
+struct ProgramKind {
+  KernelId kernel = KernelId::wendland_c2;
+  bool is_double = false;          ///< sums over pairs
+  bool has_table = false;          ///< of liquids
+  bool has_contact_terms = false;  ///< layers and restitution
+
+  bool operator==(const ProgramKind&) const = default;
+};
+
+ProgramKind program_for(const Model& model) {
+  return {model.scene.kernel, has_double_pairs(model), has_table_of_liquids(model),
+          has_contact_terms(model)};
+}
+
 class DeviceEngine : public StepEngine {
  public:
-  /// `options` are those of `program`, which is for scenes with the kernel wendland_c2, single
-  /// precision and one liquid.
+  /// `options` are those of `program`, which has the kind ProgramKind{}.
   DeviceEngine(std::unique_ptr<Program> program, std::string options, DeviceArithmetic arithmetic)
       : device_(program->device()),
         options_(std::move(options)),
@@ -70,39 +84,33 @@ class DeviceEngine : public StepEngine {
   Status read_motions(BodyMotions& motions) override;
 
  private:
-  /// Creates the program for the kernel, precision and liquids of a scene, if the present program
-  /// is for others.
+  /// Creates the program for a scene, if the present program is for others.
   Status adapt_program(const Model& model);
 
   const opencl::Device device_;
   const std::string options_;
-  KernelId kernel_ = KernelId::wendland_c2;  ///< of program_
-  bool has_table_ = false;                   ///< of liquids, in program_
+  ProgramKind kind_;  ///< of program_
   std::unique_ptr<Program> program_;
   std::string name_;
   std::unique_ptr<DeviceMethod> method_;  ///< of the bound model
 };
 
 Status DeviceEngine::adapt_program(const Model& model) {
-  const KernelId kernel = model.scene.kernel;
-  const bool is_double = has_double_pairs(model);
-  const bool has_table = has_table_of_liquids(model);
-  if (kernel == kernel_ && is_double == program_->has_double_pairs() && has_table == has_table_) {
-    return {};
-  }
+  const ProgramKind kind = program_for(model);
+  if (kind == kind_) return {};
   std::string options = options_;
   opencl::Device device = device_;
-  if (kernel == KernelId::cubic_spline) options += " -DVAT_CUBIC_SPLINE";
-  if (is_double) options += " -DVAT_DOUBLE_PAIRS";
-  if (has_table) options += " -DVAT_SEVERAL_LIQUIDS";
-  if (is_double || has_table) device.lanes = 1;  // vectors have neither
+  if (kind.kernel == KernelId::cubic_spline) options += " -DVAT_CUBIC_SPLINE";
+  if (kind.is_double) options += " -DVAT_DOUBLE_PAIRS";
+  if (kind.has_table) options += " -DVAT_SEVERAL_LIQUIDS";
+  if (kind.has_contact_terms) options += " -DVAT_CONTACT_TERMS";
+  if (kind.is_double || kind.has_table) device.lanes = 1;  // vectors have neither
   options += lanes_option(device);
   Result<std::unique_ptr<Program>> program =
-      Program::create(device, device_kernels(), options, is_double);
+      Program::create(device, device_kernels(), options, kind.is_double);
   if (!program) return program.errors();
   program_ = std::move(program).value();
-  kernel_ = kernel;
-  has_table_ = has_table;
+  kind_ = kind;
   return {};
 }
 

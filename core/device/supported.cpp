@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "core/damping/damping_solve.h"
+#include "core/device/contact/solid_geometry.h"
 #include "core/device/liquid/device_step_control.h"
-#include "core/device/solid/solid_geometry.h"
 #include "core/model/acting_forces.h"
 #include "core/numerics/step_limits.h"
 
@@ -45,7 +45,6 @@ class Missing {
   }
   void check_body(std::size_t index);
   void check_laws();
-  void check_projections(const std::string& path);
   void check_motions();
   /// Returns whether the scene has sums over pairs that have neither double precision nor several
   /// liquids on devices.
@@ -142,16 +141,11 @@ void Missing::check_liquid() {
   check_laws();
 }
 
-void Missing::check_projections(const std::string& path) {
-  reject(std::ranges::any_of(scene_.bodies, has_motion), path,
-         "must have the law penalty in a scene with driven bodies");
-}
-
 void Missing::check_laws() {
-  const std::string path = scene_.interfaces.empty() ? "/default_interface" : "/interfaces";
-  reject(model_.has_layers, path, "must have the law penalty or projection");
-  if (model_.has_projection) check_projections(path);
-  reject(model_.has_restitution, path, "must have a damping in place of a restitution");
+  if (!model_.has_projection) return;
+  reject(std::ranges::any_of(scene_.bodies, has_motion),
+         scene_.interfaces.empty() ? "/default_interface" : "/interfaces",
+         "must have the law penalty or lennard_jones in a scene with driven bodies");
 }
 
 void Missing::check_motions() {

@@ -51,6 +51,10 @@ inline bool has_double_pairs(const Model& model) {
 inline bool has_table_of_liquids(const Model& model) {
   return model.is_coupled && !model.is_incompressible && has_several_liquids(model);
 }
+/// Returns whether the kernels of contacts have the terms of layers and restitution.
+inline bool has_contact_terms(const Model& model) {
+  return model.has_layers || model.has_restitution;
+}
 /// Returns the bytes of a number in the precision of these sums.
 inline std::size_t bytes_of_real(const Model& model) {
   return has_double_pairs(model) ? sizeof(double) : sizeof(float);

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "core/device/contact/solid_geometry.h"
 #include "core/device/incompressible/device_pushes.h"
-#include "core/device/solid/solid_geometry.h"
 #include "core/liquid/incompressible/solve_limits.h"
 #include "core/liquid/pairs/coupled_pairs.h"
 #include "core/support/check.h"

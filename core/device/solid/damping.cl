@@ -101,7 +101,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multiply_damping(
     global const ContactLaw* laws, global const uint* exclusion_begin,
     global const uint* exclusions, global const uint* spring_begin,
     global const SpringEnd* springs, global int* contact_counts, global uint* contacts,
-    global const double* ways, global double* multiplied, global double* torque,
+    global const Mobility* mobilities, global const double* ways, global double* multiplied, global double* torque,
     global double4* partial) {
   local double4 sums[GROUP];
   if (!progress->is_open) return;
@@ -110,7 +110,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multiply_damping(
   double4 own = 0;
   if (acting != 0 || i < p.free) {
     Target t = target_at(&p, i, place_of_solid(&p, position, i), predicted, spins, mass, radius,
-                         body_of);
+                         body_of, mobilities);
     t.is_change = 1;
     t.w = vector_at(direction, i);
     t.spin_change = vector_at(spin_changes, t.body);

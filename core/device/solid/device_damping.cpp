@@ -83,7 +83,7 @@ void DeviceDamping::find_mass(const Model& model, std::uint64_t step) {
     if (model.inverse_mass[i] > 0) total_mass_ += model.mass[i];
   }
   for (const RigidModel& rigid : model.rigid_bodies) {
-    if (!rigid.is_held(step)) total_mass_ += rigid.mass;
+    if (!rigid.is_held(step) && !rigid.axle) total_mass_ += rigid.mass;
   }
 }
 
@@ -130,8 +130,8 @@ void DeviceDamping::iterate(const SolidParameters& p, const DampingParameters& d
   program_.run("multiply_damping", count_, p, damping, progress_, solids.cells.begins, solids.order,
                solids.sorted, solids.position, solids.predicted, direction_, r.spins, spin_change_,
                t.mass, t.radius, t.body_of, t.bodies, t.laws, t.exclusion_begin, t.exclusions,
-               t.spring_begin, t.springs, memory.contact_counts, memory.contacts, memory.ways,
-               multiplied_, torque_, partial_);
+               t.spring_begin, t.springs, memory.contact_counts, memory.contacts,
+               solids.contact_mobilities, memory.ways, multiplied_, torque_, partial_);
   if (bodies_ > 0) {
     program_.run_in_lanes("multiply_damping_of_bodies", bodies_ * kOne, damping, first,
                           groups_of(count_), r.rigid, r.poses, solids.position, torque_, direction_,

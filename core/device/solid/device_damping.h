@@ -5,9 +5,9 @@
 #include <span>
 
 #include "core/device/common/device_cells.h"
+#include "core/device/contact/solid_geometry.h"
 #include "core/device/opencl/program.h"
 #include "core/device/solid/device_rigid_bodies.h"
-#include "core/device/solid/solid_geometry.h"
 #include "core/device/solid/solid_tables.h"
 
 namespace vat {
@@ -75,7 +75,8 @@ struct PlacedSolids {
   const opencl::Buffer& velocity;
   const opencl::Buffer& predicted;  ///< velocities in forces
   const DeviceRigidBodies& rigid;
-  const RememberedForces& memory;  ///< of the last forces
+  const RememberedForces& memory;            ///< of the last forces
+  const opencl::Buffer& contact_mobilities;  ///< only for restitution
 };
 
 /// Converts forces to those at the velocities after a step, as solve_damping(), on a device. The

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/device/common/kernel_values.h"
-#include "core/device/solid/solid_geometry.h"
+#include "core/device/contact/solid_geometry.h"
 #include "core/solid/elongation_limit.h"
 #include "core/support/check.h"
 

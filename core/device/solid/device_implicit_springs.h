@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/device/contact/solid_geometry.h"
 #include "core/device/opencl/program.h"
-#include "core/device/solid/solid_geometry.h"
 #include "core/device/solid/solid_tables.h"
 #include "core/model/model.h"
 #include "core/stage/advance_report.h"

@@ -3,9 +3,9 @@
 #include <cstddef>
 
 #include "core/device/common/device_motion.h"
+#include "core/device/contact/solid_geometry.h"
 #include "core/device/opencl/program.h"
 #include "core/device/solid/device_rigid_bodies.h"
-#include "core/device/solid/solid_geometry.h"
 #include "core/device/solid/solid_tables.h"
 #include "core/model/model.h"
 

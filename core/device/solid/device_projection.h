@@ -6,9 +6,9 @@
 
 #include "core/device/common/device_cells.h"
 #include "core/device/common/device_motion.h"
+#include "core/device/contact/solid_geometry.h"
 #include "core/device/opencl/program.h"
 #include "core/device/solid/device_rigid_bodies.h"
-#include "core/device/solid/solid_geometry.h"
 #include "core/device/solid/solid_tables.h"
 #include "core/model/model.h"
 #include "core/stage/advance_report.h"

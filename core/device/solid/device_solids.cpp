@@ -71,6 +71,7 @@ DeviceSolids::DeviceSolids(Program& program, const Model& model, const GuardBoun
   if (!model.limited_springs.empty()) elongation_.emplace(program, model);
   if (model.has_projection) projection_.emplace(program, model);
   if (model.scene.sleeping) body_motions_.emplace(program, model, range_.first);
+  if (model.has_restitution) restitution_.emplace(program, model);
 }
 
 std::size_t DeviceSolids::bytes_for(const Model& model) {
@@ -88,7 +89,8 @@ std::size_t DeviceSolids::bytes_for(const Model& model) {
          (has_implicit_springs(model) ? DeviceImplicitSprings::bytes_for(model) : 0) +
          (model.limited_springs.empty() ? 0 : DeviceElongation::bytes_for(model)) +
          (model.has_projection ? DeviceProjection::bytes_for(model) : 0) +
-         (model.scene.sleeping ? DeviceBodyMotions::bytes_for(model) : 0);
+         (model.scene.sleeping ? DeviceBodyMotions::bytes_for(model) : 0) +
+         (model.has_restitution ? DeviceRestitution::bytes_for(model) : 0);
 }
 
 void DeviceSolids::write(const State& state) {
@@ -302,13 +304,15 @@ void DeviceSolids::divide_kicks(SolidParameters& p, Real time, Real step,
 void DeviceSolids::find_forces(Real end) {
   const SolidTables& t = tables_;
   near_bodies_.find(rigid_.rigid, rigid_.poses);
-  program_.run("find_solid_forces", range_.count, parameters(end), cells_.begins, order_, sorted_,
+  const SolidParameters p = parameters(end);
+  if (restitution_) restitution_->find(p, placed());
+  program_.run("find_solid_forces", range_.count, p, cells_.begins, order_, sorted_,
                motion_.position, predicted_, rigid_.spins, t.mass, t.mobility, t.radius, t.body_of,
                t.bodies, t.laws, t.exclusion_begin, t.exclusions, t.spring_begin, t.springs,
-               t.corner_begin, t.corners, t.cells, pressure_, force_, rigid_.torque, rigid_.loads,
-               partial_, memory_.is_used, memory_.contact_counts, memory_.contacts, memory_.ways,
-               near_bodies_.search(), rigid_.rigid_of, near_bodies_.spheres, near_bodies_.counts,
-               near_bodies_.near);
+               t.corner_begin, t.corners, t.cells, pressure_, contact_mobilities(), force_,
+               rigid_.torque, rigid_.loads, partial_, memory_.is_used, memory_.contact_counts,
+               memory_.contacts, memory_.ways, near_bodies_.search(), rigid_.rigid_of,
+               near_bodies_.spheres, near_bodies_.counts, near_bodies_.near);
 }
 
 void DeviceSolids::gather() {

@@ -10,6 +10,7 @@
 #include "core/device/common/device_counters.h"
 #include "core/device/common/device_motion.h"
 #include "core/device/contact/device_near_bodies.h"
+#include "core/device/contact/solid_geometry.h"
 #include "core/device/liquid/device_particles.h"
 #include "core/device/opencl/program.h"
 #include "core/device/solid/device_damping.h"
@@ -17,9 +18,9 @@
 #include "core/device/solid/device_implicit_springs.h"
 #include "core/device/solid/device_integration.h"
 #include "core/device/solid/device_projection.h"
+#include "core/device/solid/device_restitution.h"
 #include "core/device/solid/device_rigid_bodies.h"
 #include "core/device/solid/device_spring_changes.h"
-#include "core/device/solid/solid_geometry.h"
 #include "core/device/solid/solid_tables.h"
 #include "core/model/model.h"
 #include "core/state/state.h"
@@ -133,7 +134,11 @@ class DeviceSolids {
   /// Returns the particles after move().
   PlacedSolids placed() const {
     return {tables_,          cells_,     order_, sorted_, motion_.position,
-            motion_.velocity, predicted_, rigid_, memory_};
+            motion_.velocity, predicted_, rigid_, memory_, contact_mobilities()};
+  }
+  /// Returns DeviceRestitution::mobilities(), or another buffer in scenes without restitution.
+  const opencl::Buffer& contact_mobilities() const {
+    return restitution_ ? restitution_->mobilities() : tables_.mobility;
   }
 
   // Buffers in the order of particles:
@@ -197,6 +202,7 @@ class DeviceSolids {
   std::optional<DeviceElongation> elongation_;  ///< only if springs are limited
   std::optional<DeviceProjection> projection_;
   std::optional<DeviceBodyMotions> body_motions_;  ///< only with sleeping
+  std::optional<DeviceRestitution> restitution_;   ///< only if contacts have a restitution
   ReadMotion read_;
   std::vector<Vec3> read_forces_;
   Oscillation bound_, saved_bound_;  ///< of the last forces

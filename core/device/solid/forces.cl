@@ -3,13 +3,6 @@
 // the order of their other ends.
 
 typedef struct {
-  double stiffness;
-  double damping;
-  double threshold;
-  double friction;
-} ContactLaw;
-
-typedef struct {
   uint other;
   double stiffness;
   double damping;
@@ -24,12 +17,16 @@ typedef struct {
 
 // The particle whose forces are summed. `stiffness` and `damping` are those of ContactLoad. If
 // `is_change` is set, the sum is the change of the forces by a change w of all velocities, for
-// constant positions and drag coefficients; see DampingMatrix.
+// constant positions and drag coefficients; see DampingMatrix. If `sums_directions` is set, it is the
+// sum of the normals of the contacts. `mobilities` are those of all particles, in scenes with
+// restitution.
 typedef struct {
   int index;
   int body;
   int is_change;
   int is_rigid;
+  int sums_directions;
+  global const Mobility* mobilities;
   double mass;
   double radius;
   double3 x;
@@ -112,10 +109,24 @@ INLINE double3 across(double3 v, double3 n) {
 }
 
 // Adds the contact with another particle at the distance r; see add_contacts(). Returns false if the
-// contact does not act.
+// contact does not act. A layer has no damper, so that solves for damping do not need it.
 INLINE bool add_contact(const Solids* p, ContactLaw law, const Other* o, double3 x, double r,
                  double threshold, Target* t) {
   const double3 n = direction_of(p, x, r, t->index, o->index);
+  if (HAS_TERMS && t->sums_directions) {
+    if (law.stiffness > 0) t->force += n;
+    return false;
+  }
+  if (HAS_TERMS && law.layer > 0) {
+    if (!t->is_change) t->force += layer_push(law, threshold, r) * n;
+    t->stiffness += 2 * greatest_layer_slope(law, threshold, r);
+    return false;
+  }
+  if (HAS_TERMS && law.damping_ratio > 0) {
+    const double mobility = mobility_along(t->mobilities + t->index, n) +
+                            mobility_along(t->mobilities + o->index, -n);
+    law.damping = damping_for(law.damping_ratio, law.stiffness, mobility);
+  }
   const double3 relative = t->v - o->v;
   const double speed = product(relative, n);
   const double push = law.stiffness * (threshold - r) - law.damping * speed;
@@ -210,8 +221,7 @@ INLINE bool add_contact_at(const Solids* p, const ContactColumns* c, int slot, d
   // The laws within bodies follow those between materials.
   const ContactLaw law = c->laws[is_own ? p->materials * p->materials + material
                                         : material * p->materials + other];
-  const double touching = t->radius + c->radius[j];
-  const double threshold = law.threshold > 0 ? law.threshold : touching;
+  const double threshold = threshold_of(law, t->radius + c->radius[j]);
   const double3 x = t->x - sorted_at(p, c->sorted, slot) + shift;
   const double square = product(x, x);
   if (!(square < threshold * threshold)) return false;
@@ -342,12 +352,14 @@ INLINE void add_cells(const Solids* p, global const uint* begins, global const u
 
 // Adds the forces of the walls, see add_wall_forces(). Returns whether a wall acts.
 INLINE bool add_walls(const Solids* p, ContactLaw law, Target* t) {
-  const double threshold = law.threshold > 0 ? law.threshold : t->radius;
+  const double threshold = threshold_of(law, t->radius);
   const double sticking = law.friction > 0 ? sqrt(law.stiffness * t->mass) : 0;
   const double at[3] = {t->x.x, t->x.y, t->x.z};
   const double v[3] = {t->v.x, t->v.y, t->v.z};
   const double w[3] = {t->w.x, t->w.y, t->w.z};
   int count = 0;
+  double stiffness = 0;
+  double damping = 0;
   for (int wall = 0; wall < 6; ++wall) {
     const int axis = wall / 2;
     if (!((p->walls >> wall) & 1)) continue;
@@ -355,10 +367,26 @@ INLINE bool add_walls(const Solids* p, ContactLaw law, Target* t) {
     if (distance >= threshold) continue;
     const double side = wall % 2 == 0 ? 1 : -1;
     const double3 n = (double3)(axis == 0 ? side : 0, axis == 1 ? side : 0, axis == 2 ? side : 0);
+    if (HAS_TERMS && t->sums_directions) {
+      if (law.stiffness > 0) t->force += n;
+      continue;
+    }
+    if (HAS_TERMS && law.layer > 0) {
+      if (!t->is_change) t->force += layer_push(law, threshold, distance) * n;
+      stiffness = fmax(stiffness, greatest_layer_slope(law, threshold, distance));
+      ++count;
+      continue;
+    }
+    if (HAS_TERMS && law.damping_ratio > 0) {
+      law.damping = damping_for(law.damping_ratio, law.stiffness,
+                                mobility_along(t->mobilities + t->index, n));
+    }
     const double speed = side * (v[axis] - p->wall_velocity[axis]);
     const double push = law.stiffness * (threshold - distance) - law.damping * speed;
     if (push <= 0) continue;
     ++count;
+    stiffness = law.stiffness;
+    damping = fmax(damping, law.damping);
     t->force += (t->is_change ? -law.damping * side * w[axis] : push) * n;
     if (!(law.friction > 0)) continue;
     const double3 arm = t->is_rigid ? -distance * n : (double3)(0);
@@ -373,8 +401,8 @@ INLINE bool add_walls(const Solids* p, ContactLaw law, Target* t) {
     t->torque += cross_product(arm, friction);
   }
   if (count == 0) return false;
-  t->stiffness += law.stiffness;
-  t->damping += fmax(law.damping, sticking) + (count - 1) * sticking;
+  t->stiffness += stiffness;
+  t->damping += fmax(damping, sticking) + (count - 1) * sticking;
   return true;
 }
 
@@ -394,10 +422,12 @@ INLINE double2 bound_of(const Target* t, double mobility, Body body) {
 // A target without forces.
 INLINE Target target_at(const Solids* p, int i, double3 x, global const double* predicted,
                  global const double* spins, global const double* mass,
-                 global const double* radius, global const int* body_of) {
+                 global const double* radius, global const int* body_of,
+                 global const Mobility* mobilities) {
   const double3 zero = 0;
-  const Target t = {i,    body_of[i], 0,    i >= p->free, mass[i], radius[i], x,
-                    vector_at(predicted, i), zero, vector_at(spins, body_of[i]), zero, zero, zero, 0, 0};
+  const Target t = {i,       body_of[i], 0, i >= p->free,            0,    mobilities,
+                    mass[i], radius[i],  x, vector_at(predicted, i), zero, vector_at(spins, body_of[i]),
+                    zero,    zero,       zero, 0, 0};
   return t;
 }
 
@@ -413,8 +443,8 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_solid_forces
     global const uint* exclusion_begin, global const uint* exclusions,
     global const uint* spring_begin, global const SpringEnd* springs,
     global const uint* cell_begin, global const uint2* corners, global const VolumeCell* cells,
-    global const double* pressure, global double* force, global double* torque,
-    global double2* loads, global double2* partial, const int keeps_lists,
+    global const double* pressure, global const Mobility* mobilities, global double* force,
+    global double* torque, global double2* loads, global double2* partial, const int keeps_lists,
     global int* contact_counts, global uint* contacts, global double* ways,
     const NearSearch search, global const int* rigid_of, global const double* spheres,
     global const int* near_counts, global const int* near_bodies) {
@@ -423,7 +453,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_solid_forces
   double2 own = 0;
   if (i < p.count) {
     Target t = target_at(&p, i, place_of_solid(&p, position, i), predicted, spins, mass, radius,
-                         body_of);
+                         body_of, mobilities);
     const Body body = bodies[t.body];
     t.force = t.mass * (double3)(p.gravity[0], p.gravity[1], p.gravity[2]);
     if (p.field_strength > 0) {

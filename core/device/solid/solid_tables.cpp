@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/device/solid/solid_geometry.h"
+#include "core/device/contact/solid_geometry.h"
 #include "core/limits.h"
 #include "core/support/check.h"
 
@@ -14,7 +14,7 @@ namespace {
 using opencl::Buffer;
 using opencl::Program;
 
-// Structs of particles.cl and forces.cl.
+// Structs of particles.cl and contact_terms.cl.
 struct SolidBody {
   double travel;
   double omega2;
@@ -23,7 +23,7 @@ struct SolidBody {
   std::int32_t touches_itself;
 };
 struct SolidLaw {
-  double stiffness, damping, threshold, friction;
+  double stiffness, damping, threshold, friction, layer, damping_ratio;
 };
 static_assert(sizeof(SpringEnd) == 32 && sizeof(VolumeCell) == 48 && sizeof(CellCorner) == 8);
 static_assert(offsetof(SpringEnd, stiffness) == 8 && offsetof(SpringEnd, damping) == 16 &&
@@ -44,7 +44,7 @@ std::vector<SolidBody> bodies_of(const Model& model, const GuardBounds& bounds) 
 }
 
 SolidLaw law_of(const ContactLaw& law) {
-  return {law.stiffness, law.damping, law.threshold, law.friction};
+  return {law.stiffness, law.damping, law.threshold, law.friction, law.layer, law.damping_ratio};
 }
 
 std::vector<SolidLaw> laws_of(const Model& model) {
@@ -52,7 +52,7 @@ std::vector<SolidLaw> laws_of(const Model& model) {
   std::ranges::transform(model.contact_laws, std::back_inserter(laws), law_of);
   for (const std::optional<SpringConstants>& within : model.self_contacts) {
     const SpringConstants spring = within.value_or(SpringConstants{});
-    laws.push_back({spring.stiffness, spring.damping, 0, 0});
+    laws.push_back({.stiffness = spring.stiffness, .damping = spring.damping});
   }
   std::ranges::transform(model.wall_laws, std::back_inserter(laws), law_of);
   return laws;

@@ -78,6 +78,16 @@ bool acts(ContactLaw law) {
   return law.stiffness > 0 || law.damping > 0;
 }
 
+// Sets the stiffness of a layer, and the damping of a restitution. `nearest` is the least distance in
+// the step.
+void predict_terms(ContactLaw* law, double threshold, double nearest, double mobility) {
+  if (HAS_TERMS && law->layer > 0) {
+    law->stiffness = greatest_layer_slope(*law, threshold, clamp(nearest, 0.0, threshold));
+  } else if (HAS_TERMS && law->damping_ratio > 0) {
+    law->damping = damping_for(law->damping_ratio, law->stiffness, mobility);
+  }
+}
+
 // Adds the contacts with other particles, see look_at_pairs().
 void look_at_pairs(const Solids* p, const StepSearch* search, double approach,
                    global const int* begins, global const int* order,
@@ -102,9 +112,9 @@ void look_at_pairs(const Solids* p, const StepSearch* search, double approach,
       const double square = product(x, x);
       const int body = body_of[j];
       const bool is_own = body == my_body;
-      const ContactLaw law = laws[is_own ? p->materials * p->materials + mine.material
-                                         : mine.material * p->materials + bodies[body].material];
-      const double threshold = law.threshold > 0 ? law.threshold : radius[i] + radius[j];
+      ContactLaw law = laws[is_own ? p->materials * p->materials + mine.material
+                                   : mine.material * p->materials + bodies[body].material];
+      const double threshold = threshold_of(law, radius[i] + radius[j]);
       const double notice = threshold + approach;
       if (!acts(law) || !(square < notice * notice)) continue;
       if (is_own && is_excluded(exclusion_begin, exclusions, i, j)) continue;
@@ -113,6 +123,8 @@ void look_at_pairs(const Solids* p, const StepSearch* search, double approach,
       const double speed = sqrt(product(relative, relative));
       const double time = time_to_touch(r - threshold, speed + search->gained_speed);
       if (time > search->longest) continue;
+      predict_terms(&law, threshold, r - (speed + search->gained_speed) * search->longest,
+                    mobility[i] + mobility[j]);
       const double3 n = direction_of(p, x, r, i, j);
       const double sticking =
           law.friction > 0 ? sqrt(law.stiffness * (mass[i] * mass[j] / (mass[i] + mass[j]))) : 0;
@@ -123,11 +135,12 @@ void look_at_pairs(const Solids* p, const StepSearch* search, double approach,
 }
 
 // Adds the contacts with walls, see look_at_walls().
-void look_at_walls(const Solids* p, const StepSearch* search, ContactLaw law, double mass,
-                   double radius, double3 own, double3 velocity, Prediction* sum) {
-  if (!acts(law)) return;
-  const double threshold = law.threshold > 0 ? law.threshold : radius;
-  const double sticking = law.friction > 0 ? sqrt(law.stiffness * mass) : 0;
+void look_at_walls(const Solids* p, const StepSearch* search, ContactLaw of_wall, double mass,
+                   double mobility, double radius, double3 own, double3 velocity,
+                   Prediction* sum) {
+  if (!acts(of_wall)) return;
+  const double threshold = threshold_of(of_wall, radius);
+  const double sticking = of_wall.friction > 0 ? sqrt(of_wall.stiffness * mass) : 0;
   const double at[3] = {own.x, own.y, own.z};
   const double v[3] = {velocity.x, velocity.y, velocity.z};
   for (int wall = 0; wall < 6; ++wall) {
@@ -140,6 +153,8 @@ void look_at_walls(const Solids* p, const StepSearch* search, ContactLaw law, do
     const double time = time_to_touch(gap, approach);
     if (time > search->longest) continue;
     const double3 n = (double3)(axis == 0 ? side : 0, axis == 1 ? side : 0, axis == 2 ? side : 0);
+    ContactLaw law = of_wall;
+    predict_terms(&law, threshold, gap + threshold - approach * search->longest, mobility);
     add_prediction(law.stiffness, law.damping, sticking, 1, threshold, time, n,
                    fabs(speed + side * p->wall_velocity[axis]), sum);
   }
@@ -172,8 +187,8 @@ kernel void predict_contacts(const Solids p, const StepSearch search,
     }
     const int of_wall =
         p.materials * p.materials + p.materials + bodies[body_of[i]].material;
-    look_at_walls(&p, &search, laws[of_wall], mass[i], radius[i], own, vector_at(velocity, i),
-                  &sum);
+    look_at_walls(&p, &search, laws[of_wall], mass[i], mobility[i], radius[i], own,
+                  vector_at(velocity, i), &sum);
   }
   predictions[i - p.free] = sum;
 }

@@ -238,8 +238,6 @@ TEST(CoupledDevice, RefusesFeaturesThatItLacks) {
          s.bodies[1].velocity.setZero();
          s.bodies[1].angular_velocity.setZero();
        }},
-      {"/default_interface",
-       [](Scene& s) { s.default_interface.law = InterfaceLaw::lennard_jones; }},
   };
   expect_refusals(make_pool(), cases);
 }

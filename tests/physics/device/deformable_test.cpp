@@ -312,13 +312,6 @@ TEST(DeformableDevice, SolvesForStrongDamping) {
 TEST(DeformableDevice, RefusesFeaturesThatItLacks) {
   const SceneCase cases[] = {
       {"/numerics/control", [](Scene& s) { s.numerics.control = StepControl::adaptive; }},
-      {"/default_interface",
-       [](Scene& s) { s.default_interface.law = InterfaceLaw::lennard_jones; }},
-      {"/interfaces",
-       [](Scene& s) {
-         s.interfaces = {{{"jelly", kVatMaterial}, {5000, 0}, {}}};
-         s.interfaces[0].constants.restitution = 0.5;
-       }},
   };
   expect_refusals(make_blocks(), cases);
 }

@@ -64,6 +64,15 @@ const SceneCase kScenes[] = {
        scene.bodies[1].angular_velocity = {2, 5, -1};
        scene.default_interface.friction = 0.3;
      }},
+    {"restitution of a body, and layers of walls",
+     [](Scene& scene) {
+       add_solid(scene, BodyKind::rigid, {0.09, 0.06, 0.205});
+       const InterfaceConstants bouncing{.stiffness = scene.default_interface.stiffness,
+                                         .restitution = 0.5};
+       scene.interfaces = {{{"water", "wood"}, bouncing, {}},
+                           {{"water", kVatMaterial}, {.stiffness = 100}, {}}};
+       scene.interfaces[1].constants.law = InterfaceLaw::lennard_jones;
+     }},
     {"fixed body that moves through a liquid",
      [](Scene& scene) {
        add_solid(scene, BodyKind::rigid, {0.09, 0.06, 0.205});

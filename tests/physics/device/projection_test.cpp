@@ -165,6 +165,12 @@ TEST(ProjectionDevice, RefusesFeaturesThatItLacks) {
          s.bodies[0].angular_velocity.setZero();
          s.bodies[0].motion = SlideMotion{{1, 0, 0}, 0.1, 1};
        }},
+      {"/interfaces",
+       [](Scene& s) {
+         s.bodies[0].velocity.setZero();
+         s.bodies[0].motion = SlideMotion{{1, 0, 0}, 0.1, 1};
+         s.interfaces = {{{"wood", kVatMaterial}, {20000, 10}, {}}};
+       }},
   };
   expect_refusals(make_marbles(), cases);
 }

@@ -1,4 +1,4 @@
-#include "core/device/solid/solid_geometry.h"
+#include "core/device/contact/solid_geometry.h"
 
 #include <algorithm>
 #include <cmath>
