@@ -142,11 +142,10 @@ TEST(DeviceCommand, BenchMeasuresADeviceBesideTheCpu) {
   const std::string refused = folder.file("refused.json");
   std::ifstream clay(VAT_SOURCE_DIR "/protocol/scenes/clay.json");
   nlohmann::json scene = nlohmann::json::parse(clay);
-  scene["default_interface"] = {{"stiffness", 20000}, {"restitution", 0.5}};
+  scene["numerics"]["control"] = "adaptive";
   std::ofstream(refused) << scene;
-  EXPECT_THAT(
-      run_bench({"speed", "--quick", "--device", "opencl", refused}),
-      exits(1, HasSubstr("/default_interface: must have a damping in place of a restitution")));
+  EXPECT_THAT(run_bench({"speed", "--quick", "--device", "opencl", refused}),
+              exits(1, HasSubstr("/numerics/control: must be fixed")));
 }
 
 TEST(DeviceCommand, RecordsOnADevice) {
