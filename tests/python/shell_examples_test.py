@@ -29,7 +29,10 @@ ELSEWHERE = {
     "./vat bench validate": "takes hours; the tests cli/bench_* run short versions",
     "./vat bench speed --threads 2 --device opencl:0 --case dam-break-10k-tait "
     "--case dam-break-30k-tait --case dam-break-10k-incompressible "
-    "--case dam-break-30k-incompressible --case rigid-pile-200-penalty --case deformable-50":
+    "--case dam-break-30k-incompressible --case rigid-pile-200-penalty --case deformable-50 "
+    "--case dam-break-300k-tait --case dam-break-300k-incompressible "
+    "--case rigid-pile-30k-penalty --case rigid-pile-300k-penalty --case deformable-30k "
+    "--case deformable-300k":
         "takes minutes; cli/bench_document_test.cpp fills the table",
     "docker compose --file docker/compose.yaml up --build": "needs a container engine",
     "docker compose --file docker/compose.cluster.yaml up --build": "needs a container engine",

@@ -70,7 +70,8 @@ int leaves_of_tree(int count) {
 }
 
 // Combines `count` values of a group by `combine` in a tree, into values[0]. The values from `count`
-// to leaves_of_tree(count) are 0. On a CPU, one work-item does so, because a barrier takes more time than some combinations.
+// to leaves_of_tree(count) are 0. On a CPU, one work-item does so, because a barrier takes more time
+// than some combinations.
 #if LANES > 1
 #define COMBINE_SOME(values, count, combine)                                   \
   {                                                                            \
@@ -126,7 +127,6 @@ double4 sum_partial(local double4* sums, int count, global const double4* partia
   for (int n = get_local_id(0); n < count; n += GROUP) own = combined(own, partial[n]);
   return sum_group(sums, own);
 }
-
 
 #if LANES > 1
 // The lowest bits of eight numbers that are 0 or -1.
