@@ -79,8 +79,8 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void open_damping(
 
 // Adds the dampers of the target's springs, whose directions are `ways`. `change` is the change of the
 // velocities.
-INLINE void add_dampers(global const uint* begins, global const SpringEnd* ends, global const double* ways,
-                 global const double* change, Target* t) {
+INLINE void add_dampers(global const uint* begins, global const SpringEnd* ends,
+                        global const double* ways, global const double* change, Target* t) {
   const uint end = begins[t->index + 1];
   for (uint s = begins[t->index]; s < end; ++s) {
     const double3 n = vector_at(ways, s);
@@ -101,7 +101,8 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multiply_damping(
     global const ContactLaw* laws, global const uint* exclusion_begin,
     global const uint* exclusions, global const uint* spring_begin,
     global const SpringEnd* springs, global int* contact_counts, global uint* contacts,
-    global const Mobility* mobilities, global const double* ways, global double* multiplied, global double* torque,
+    global const Mobility* mobilities, global const double* ways, global double* multiplied,
+    global double* torque,
     global double4* partial) {
   local double4 sums[GROUP];
   if (!progress->is_open) return;
@@ -119,7 +120,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void multiply_damping(
                                     exclusion_begin, exclusions};
     const int count = acting & (WALLS_ACT - 1);
     if (count > MOST_CONTACTS) {
-      const ContactLists none = {0, contact_counts, contacts};
+      const ContactLists none = {0, contacts};
       add_contacts(&p, &columns, &none, &t);
     } else {
       for (int k = 0; k < count; ++k) {

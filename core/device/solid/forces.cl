@@ -189,7 +189,6 @@ typedef struct {
 // it the image. Lists of more than MOST_CONTACTS are not complete.
 typedef struct {
   int is_kept;
-  global int* counts;
   global uint* near;
 } ContactLists;
 
@@ -209,7 +208,8 @@ INLINE double3 shift_to(const Solids* p, uint image) {
 }
 
 // Adds the contact with the particle in a slot. Returns false if there is none, or if it does not act.
-INLINE bool add_contact_at(const Solids* p, const ContactColumns* c, int slot, double3 shift, Target* t) {
+INLINE bool add_contact_at(const Solids* p, const ContactColumns* c, int slot, double3 shift,
+                           Target* t) {
   const int j = c->order[slot];
   const int body = c->body_of[j];
   const bool is_own = body == t->body;
@@ -232,7 +232,8 @@ INLINE bool add_contact_at(const Solids* p, const ContactColumns* c, int slot, d
 }
 
 // Adds the contacts with the particles in the cells around the target. Returns their number.
-INLINE int add_contacts(const Solids* p, const ContactColumns* c, const ContactLists* lists, Target* t) {
+INLINE int add_contacts(const Solids* p, const ContactColumns* c, const ContactLists* lists,
+                        Target* t) {
   const double untouched = c->bodies[t->body].touches_itself ? -1 : t->body;
   int count = 0;
   FOR_EACH_ROW_OF_SOLIDS(p, t->x, p->reach, c->begins, {
@@ -467,7 +468,7 @@ kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void find_solid_forces
     if (p.reach > 0 && (!search.is_used || may_touch(&search, &near, rigid_of[i], t.x))) {
       const ContactColumns columns = {begins, order, sorted, predicted, predicted, spins, spins, mass,
                                radius, body_of, bodies, laws, exclusion_begin, exclusions};
-      const ContactLists lists = {keeps_lists, contact_counts, contacts};
+      const ContactLists lists = {keeps_lists, contacts};
       acting = add_contacts(&p, &columns, &lists, &t);
     }
     if (i < p.implicit) {

@@ -19,7 +19,7 @@ kernel void find_contact_directions(
     const ContactColumns columns = {begins, order, sorted, predicted, predicted, spins,
                                     spins, mass, radius, body_of, bodies, laws,
                                     exclusion_begin, exclusions};
-    const ContactLists none = {0, 0, 0};
+    const ContactLists none = {0, 0};
     add_contacts(&p, &columns, &none, &t);
   }
   add_walls(&p, laws[p.materials * p.materials + p.materials + bodies[t.body].material], &t);

@@ -64,19 +64,7 @@ const SceneCase kScenes[] = {
        add_jelly(scene);
        scene.materials.pop_back();
      }},
-    {"two dimensions",
-     [](Scene& scene) {
-       scene.dimensions = 2;
-       scene.materials[0].density = 24;  // with masses of the same size as in three dimensions
-       for (BodyDescription& body : scene.bodies) {
-         body.position.y() = 0;
-         body.velocity.y() = 0;
-         body.orientation.setIdentity();
-         body.angular_velocity = {0, 3, 0};
-       }
-       scene.vat->min.y() = -1;
-       scene.vat->max.y() = 1;
-     }},
+    {"two dimensions", set_plane_of_heap},
     {"through the sides of a periodic world",
      [](Scene& scene) {
        scene.periodic = Periodicity{{0, 0, 0}, {0.6, 0.4, 0}, {true, true, false}};

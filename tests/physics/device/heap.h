@@ -53,6 +53,20 @@ inline void add_small_bodies(Scene& scene) {
   }
 }
 
+/// Changes a heap to one in two dimensions.
+inline void set_plane_of_heap(Scene& scene) {
+  scene.dimensions = 2;
+  scene.materials[0].density = 24;  // with masses of the same size as in three dimensions
+  for (BodyDescription& body : scene.bodies) {
+    body.position.y() = 0;
+    body.velocity.y() = 0;
+    body.orientation.setIdentity();
+    body.angular_velocity = {0, 3, 0};
+  }
+  scene.vat->min.y() = -1;
+  scene.vat->max.y() = 1;
+}
+
 /// Adds a deformable body beside the heap.
 inline void add_jelly(Scene& scene) {
   scene.materials.push_back(make_material("jelly", 400));

@@ -87,19 +87,7 @@ const SceneCase kScenes[] = {
        put_on_axle(scene);
        scene.default_interface.damping = 60;
      }},
-    {"two dimensions",
-     [](Scene& scene) {
-       scene.dimensions = 2;
-       scene.materials[0].density = 24;  // with masses of the same size as in three dimensions
-       for (BodyDescription& body : scene.bodies) {
-         body.position.y() = 0;
-         body.velocity.y() = 0;
-         body.orientation.setIdentity();
-         body.angular_velocity = {0, 3, 0};
-       }
-       scene.vat->min.y() = -1;
-       scene.vat->max.y() = 1;
-     }},
+    {"two dimensions", set_plane_of_heap},
     {"strong damping", [](Scene& scene) { scene.default_interface.damping = 60; }},
     {"strong damping and friction with a deformable body",
      [](Scene& scene) {
